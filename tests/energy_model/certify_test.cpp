@@ -2,7 +2,7 @@
 
 #include <gtest/gtest.h>
 
-#include "linear/free_directions.hpp"
+#include "linear/reduced_hessian.hpp"
 #include "newton/newton.hpp"
 #include "problem/split.hpp"
 #include "problems.hpp"

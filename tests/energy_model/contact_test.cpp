@@ -9,7 +9,7 @@
 #include <string>
 #include <vector>
 
-#include "contact/penetration.hpp"
+#include "contact/clearance.hpp"
 #include "dlo/energy_model/energy.hpp"
 #include "problems.hpp"
 #include "random_contact.hpp"

@@ -8,7 +8,7 @@
 
 #include "dlo/energy_model/energy.hpp"
 #include "frames/position_operator.hpp"
-#include "linear/newton_system.hpp"
+#include "linear/reduced_hessian.hpp"
 #include "problem/split.hpp"
 #include "problems.hpp"
 #include "strain/span_energy.hpp"

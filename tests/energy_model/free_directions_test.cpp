@@ -1,9 +1,8 @@
-#include "linear/free_directions.hpp"
-
 #include <gtest/gtest.h>
 
 #include <cmath>
 
+#include "linear/reduced_hessian.hpp"
 #include "with_eigenvalues.hpp"
 
 namespace dlo::energy_model {

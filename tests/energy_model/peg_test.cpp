@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-#include "contact/penetration.hpp"
+#include "contact/clearance.hpp"
 #include "dlo/energy_model/energy.hpp"
 #include "problems.hpp"
 #include "rolled_clamps.hpp"

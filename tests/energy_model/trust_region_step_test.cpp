@@ -1,12 +1,11 @@
-#include "linear/trust_region_step.hpp"
-
 #include <gtest/gtest.h>
 
 #include <Eigen/Eigenvalues>
 #include <cmath>
 #include <optional>
 
-#include "linear/free_directions.hpp"
+#include "linear/reduced_hessian.hpp"
+#include "newton/trust_region.hpp"
 #include "with_eigenvalues.hpp"
 
 namespace dlo::energy_model {

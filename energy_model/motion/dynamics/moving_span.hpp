@@ -10,7 +10,7 @@
 #include "dlo/energy_model/dynamics.hpp"
 #include "dynamics/span_integrator.hpp"
 #include "problem/split.hpp"
-#include "search/placed_shape.hpp"
+#include "search/assemble.hpp"
 
 namespace dlo::energy_model {
 

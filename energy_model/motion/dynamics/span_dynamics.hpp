@@ -8,7 +8,6 @@
 #include "dynamics/span_contact.hpp"
 #include "frames/fit_frames.hpp"
 #include "frames/frame_hessian.hpp"
-#include "frames/frame_spins.hpp"
 #include "frames/position_operator.hpp"
 #include "frames/rod_frames.hpp"
 #include "frames/span_shape.hpp"

@@ -8,11 +8,10 @@
 #include <memory>
 #include <span>
 
-#include "certify/contact_ends.hpp"
+#include "certify/piece_cuts.hpp"
 #include "certify/rigid_body_modes.hpp"
 #include "frames/position_operator.hpp"
-#include "linear/free_directions.hpp"
-#include "linear/newton_system.hpp"
+#include "linear/reduced_hessian.hpp"
 #include "newton/newton.hpp"
 #include "strain/second_derivatives.hpp"
 

@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 #include <cstddef>
+#include <limits>
 
 namespace dlo::energy_model {
 namespace {
@@ -87,6 +88,160 @@ void cut_beside(const Feature& feature, double sense, double room, std::vector<d
   }
 }
 
+/// Number of intervals at whose ends a shape is sampled first.
+constexpr Eigen::Index first_intervals = 400;
+
+/// Distance, divided by the rod length, below which two ends count as one.
+constexpr double closest_contact_ends = 1e-7;
+
+/// Number of parts into which a bracket is divided repeatedly, and its final width, divided by the
+/// rod length.
+constexpr int parts = 32;
+constexpr double shortest_bracket = 1e-13;
+
+/// Smallest jump of the unit gradient of the depth that counts as a ridge; where a face meets a
+/// round edge the gradient is continuous.
+constexpr double least_jump = 1e-3;
+
+/// Distance from the core of a cylinder, divided by the rod length, below which its force changes
+/// its direction too fast for the nodes of a whole element.
+constexpr double beside = 0.05;
+
+/// An interval in which the contact state of the rod changes.
+struct Bracket {
+  std::size_t obstacle = 0;
+  double begin = 0;
+  double end = 0;
+};
+
+constexpr int apart = -1;
+
+/// Returns the face, edge or corner into which a point presses; `apart` if it is outside the body.
+int state(const obstacle::Body& body, const Eigen::Vector3d& point) {
+  return body.clearance(point) < 0 ? body.feature(point) : apart;
+}
+
+Eigen::Matrix3Xd points_at(const SpanShape& shape, const std::vector<double>& s) {
+  return shape.sample(s).points;
+}
+
+std::vector<double> evenly_spaced(double length) {
+  std::vector<double> s;
+  for (Eigen::Index i = 0; i <= first_intervals; ++i) {
+    s.push_back(length * static_cast<double>(i) / static_cast<double>(first_intervals));
+  }
+  return s;
+}
+
+/// Appends equally spaced points from `begin` to `end`, both included.
+void append_divided(double begin, double end, std::vector<double>& s) {
+  for (int i = 0; i <= parts; ++i) s.push_back(begin + (end - begin) * i / parts);
+}
+
+/// Whether a body is a cylinder, a capsule or a ball, in which the force changes its direction at
+/// the core.
+bool has_thin_core(const obstacle::Body& body) {
+  return ((body.upper() - body.lower()).array() == 0).count() >= 2;
+}
+
+/// Returns the brackets of all obstacles, found on equally spaced arc lengths. It also finds dips
+/// between two of these that reach into an obstacle. It adds brackets of zero width where the rod
+/// comes so close to a thin core that forces change their direction within a short distance, which
+/// requires close nodes.
+std::vector<Bracket> brackets_of(const std::vector<Span::SoftObstacle>& obstacles,
+                                 const SpanShape& shape, double length) {
+  const std::vector<double> s = evenly_spaced(length);
+  const Eigen::Matrix3Xd points = points_at(shape, s);
+  const double spacing = length / static_cast<double>(first_intervals);
+  std::vector<Bracket> brackets;
+  std::vector<Bracket> dips;
+  for (std::size_t o = 0; o < obstacles.size(); ++o) {
+    const obstacle::Body& body = obstacles[o].body;
+    const Eigen::VectorXd clearance = body.clearances(points);
+    int before = state(body, points.col(0));
+    for (Eigen::Index i = 1; i < points.cols(); ++i) {
+      const auto at = static_cast<std::size_t>(i);
+      const int here = state(body, points.col(i));
+      if (here != before) brackets.push_back({o, s[at - 1], s[at]});
+      before = here;
+      const bool dip = i + 1 < points.cols() && clearance[i] >= 0 && clearance[i] < spacing &&
+                       clearance[i] <= clearance[i - 1] && clearance[i] <= clearance[i + 1];
+      if (dip) dips.push_back({o, s[at - 1], s[at + 1]});
+      const bool beside_core = i + 1 < points.cols() && clearance[i] < 0 && has_thin_core(body) &&
+                               clearance[i] + body.radius() < beside * length &&
+                               clearance[i] < clearance[i - 1] && clearance[i] <= clearance[i + 1];
+      if (beside_core) brackets.push_back({o, s[at], s[at]});
+    }
+  }
+  for (const Bracket& dip : dips) {
+    std::vector<double> fine;
+    append_divided(dip.begin, dip.end, fine);
+    const Eigen::VectorXd clearance =
+        obstacles[dip.obstacle].body.clearances(points_at(shape, fine));
+    for (std::size_t i = 1; i < fine.size(); ++i) {
+      const auto k = static_cast<Eigen::Index>(i);
+      if ((clearance[k - 1] < 0) != (clearance[k] < 0)) {
+        brackets.push_back({dip.obstacle, fine[i - 1], fine[i]});
+      }
+    }
+  }
+  return brackets;
+}
+
+/// Narrows each bracket to the changes within it; to the first one if the others would be closer
+/// than closest_contact_ends.
+std::vector<Bracket> narrowed(const std::vector<Span::SoftObstacle>& obstacles,
+                              const SpanShape& shape, const std::vector<Bracket>& brackets) {
+  std::vector<double> s;
+  for (const Bracket& bracket : brackets) append_divided(bracket.begin, bracket.end, s);
+  const Eigen::Matrix3Xd points = points_at(shape, s);
+  std::vector<Bracket> result;
+  std::size_t first = 0;
+  for (const Bracket& bracket : brackets) {
+    const obstacle::Body& body = obstacles[bracket.obstacle].body;
+    const bool all = bracket.end - bracket.begin > closest_contact_ends;
+    int before = state(body, points.col(static_cast<Eigen::Index>(first)));
+    const std::size_t already = result.size();
+    for (std::size_t i = first + 1; i <= first + parts; ++i) {
+      const int here = state(body, points.col(static_cast<Eigen::Index>(i)));
+      if (here != before) result.push_back({bracket.obstacle, s[i - 1], s[i]});
+      if (here != before && !all) break;
+      before = here;
+    }
+    // A change that rounding has moved out of the bracket is taken to be at its end.
+    if (result.size() == already) {
+      result.push_back({bracket.obstacle, s[first + parts - 1], s[first + parts]});
+    }
+    first += parts + 1;
+  }
+  return result;
+}
+
+std::vector<Bracket> shortest_brackets(const Span& span, const SpanShape& shape) {
+  std::vector<Bracket> brackets = brackets_of(span.soft_obstacles, shape, span.length);
+  for (double width = span.length / first_intervals;
+       !brackets.empty() && width > shortest_bracket * span.length; width /= parts) {
+    brackets = narrowed(span.soft_obstacles, shape, brackets);
+  }
+  return brackets;
+}
+
+/// Whether a rod meets the core of a body within a bracket, to rounding.
+bool meets_core(const obstacle::Body& body, const SpanShape& shape, Bracket bracket,
+                double length) {
+  constexpr double rounding = 1e-9;
+  while (bracket.end - bracket.begin > rounding * length) {
+    std::vector<double> s;
+    append_divided(bracket.begin, bracket.end, s);
+    Eigen::Index nearest = 0;
+    body.clearances(points_at(shape, s)).minCoeff(&nearest);
+    const auto at = static_cast<std::size_t>(nearest);
+    bracket = {bracket.obstacle, s[at == 0 ? 0 : at - 1], s[std::min<std::size_t>(at + 1, parts)]};
+  }
+  const std::vector<double> s = {(bracket.begin + bracket.end) / 2};
+  return body.clearances(points_at(shape, s))[0] + body.radius() < 2 * rounding * length;
+}
+
 }  // namespace
 
 std::vector<double> piece_cuts(const SpanSolution& solution) {
@@ -105,6 +260,114 @@ std::vector<double> piece_cuts(const SpanSolution& solution) {
   }
   std::sort(cuts.begin(), cuts.end());
   return cuts;
+}
+
+int first_terms(double load, double longest_piece) {
+  const double own_load = load * longest_piece * longest_piece;
+  return static_cast<int>(std::ceil(9 * std::pow(std::clamp(own_load, 0.7, 1000.0), 0.24)));
+}
+
+int terms_needed(const SpanEnergy& model, const Eigen::VectorXd& x, double tolerance, int least) {
+  int terms = model.terms();
+  while (terms > least) {
+    const double K = terms - 1;
+    if (!(model.truncation(x, terms - 1) < tolerance * 4 * K * K)) break;
+    --terms;
+  }
+  return terms;
+}
+
+int terms_under_twist(const SpanSolution& solution) {
+  const SpanEnergy& model = *solution.model;
+  const double torque = model.twisting_torque(solution.x, solution.multipliers);
+  return first_terms(torque * torque, model.longest_piece());
+}
+
+std::vector<double> contact_ends(const SpanSolution& solution) {
+  const Span& span = solution.model->span();
+  std::vector<double> ends;
+  if (span.soft_obstacles.empty()) return ends;
+  for (const Bracket& bracket : shortest_brackets(span, solution.model->shape(solution.x))) {
+    ends.push_back((bracket.begin + bracket.end) / 2);
+  }
+  std::sort(ends.begin(), ends.end());
+  const auto close = [](double a, double b) { return b - a < closest_contact_ends; };
+  ends.erase(std::unique(ends.begin(), ends.end(), close), ends.end());
+  return ends;
+}
+
+std::vector<RidgeCrossing> ridge_crossings(const SpanSolution& solution) {
+  const Span& span = solution.model->span();
+  std::vector<RidgeCrossing> crossings;
+  if (span.soft_obstacles.empty()) return crossings;
+  const SpanShape shape = solution.model->shape(solution.x);
+  for (const Bracket& bracket : shortest_brackets(span, shape)) {
+    const Span::SoftObstacle& obstacle = span.soft_obstacles[bracket.obstacle];
+    const double s = (bracket.begin + bracket.end) / 2;
+    const double beside = closest_contact_ends * span.length;
+    if (!(s > beside && s < span.length - beside) || has_thin_core(obstacle.body)) continue;
+    const std::vector<double> at = {s - beside, s + beside};
+    const SpanSamples samples = shape.sample(at);
+    const obstacle::Gap before = obstacle.body.gap(samples.points.col(0));
+    const obstacle::Gap after = obstacle.body.gap(samples.points.col(1));
+    const Eigen::Vector3d jump = after.gradient - before.gradient;
+    if (!(before.value < 0 && after.value < 0 && jump.norm() > least_jump)) continue;
+    const double crossed = std::abs(jump.dot(samples.tangents.col(0)));
+    crossings.push_back({s, std::sqrt(-obstacle.stiffness * after.value / crossed) * jump});
+  }
+  std::sort(crossings.begin(), crossings.end(),
+            [](const RidgeCrossing& a, const RidgeCrossing& b) { return a.s < b.s; });
+  return crossings;
+}
+
+MiddlePassed middle_passed(const SpanSolution& solution) {
+  const Span& span = solution.model->span();
+  if (span.soft_obstacles.empty()) return MiddlePassed::none;
+  const SpanShape shape = solution.model->shape(solution.x);
+  const std::vector<double> s = evenly_spaced(span.length);
+  const Eigen::Matrix3Xd points = points_at(shape, s);
+  constexpr double lengths_to_see = 4;
+  const double seen = lengths_to_see * span.length / first_intervals;
+  MiddlePassed passed = MiddlePassed::none;
+  for (const Span::SoftObstacle& obstacle : span.soft_obstacles) {
+    const obstacle::Body& body = obstacle.body;
+    // Near a thin core the force changes its direction within the distance from the core, which
+    // nodes have to resolve.
+    const bool thin = has_thin_core(body);
+    const Eigen::VectorXd clearance = body.clearances(points);
+    for (Eigen::Index i = 1; i < points.cols(); ++i) {
+      if (clearance[i - 1] >= 0 || clearance[i] >= 0) continue;
+      const obstacle::Gap gap = body.gap(points.col(i));
+      if (span.planar && is_on_ridge(gap)) return MiddlePassed::on_ridge;
+      const bool turns = body.gap(points.col(i - 1)).gradient.dot(gap.gradient) < 0;
+      const auto at = static_cast<std::size_t>(i);
+      if (turns && thin && meets_core(body, shape, {0, s[at - 1], s[at]}, span.length)) {
+        return MiddlePassed::through_line;
+      }
+      if (thin && (turns || clearance[i] + body.radius() < seen)) passed = MiddlePassed::near;
+    }
+  }
+  return passed;
+}
+
+double misplaced_contact(const SpanSolution& solution) {
+  const Span& span = solution.model->span();
+  double stiffest = 0;
+  for (const Span::SoftObstacle& obstacle : span.soft_obstacles) {
+    stiffest = std::max(stiffest, obstacle.stiffness);
+  }
+  const std::vector<double> ends = contact_ends(solution);
+  if (ends.empty()) return 0;
+  const std::vector<Piece> pieces = pieces_of(span);
+  double force = 0;
+  for (const double end : ends) {
+    double way = std::numeric_limits<double>::infinity();
+    for (const Piece& piece : pieces) {
+      way = std::min({way, std::abs(end - piece.begin), std::abs(end - piece.end())});
+    }
+    force += stiffest * way * way;
+  }
+  return force;
 }
 
 }  // namespace dlo::energy_model

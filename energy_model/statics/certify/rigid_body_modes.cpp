@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "base/legendre.hpp"
-#include "linear/free_directions.hpp"
+#include "linear/reduced_hessian.hpp"
 
 namespace dlo::energy_model {
 namespace {

@@ -4,6 +4,8 @@
 #include <functional>
 #include <vector>
 
+#include "dlo/energy_model/equilibrium.hpp"
+#include "dlo/energy_model/problem.hpp"
 #include "frames/span_shape.hpp"
 #include "problem/span.hpp"
 
@@ -40,5 +42,18 @@ struct GapMinimum {
 /// by ascending s. The minima of a dense grid are refined. Points at grips count.
 [[nodiscard]] std::vector<GapMinimum> gap_minima(const Span& span, const SpanShape& shape,
                                                  double below);
+
+/// Depth of a shape within rigid obstacles.
+struct Penetration {
+  double depth = 0;          ///< largest depth [m]
+  std::size_t obstacle = 0;  ///< index in the problem of the obstacle with that depth
+};
+
+/// Checks a returned equilibrium for penetration, independently of the search that found it.
+/// Measures the depth within rigid obstacles on a grid much finer than the solver's nodes, and
+/// changes a successful status to `not_verified` if the depth exceeds `allowed_penetration` rod
+/// lengths. Soft obstacles are penetrated in proportion to their force and are not checked.
+/// @param[in,out] equilibrium  status, message and penetration
+Penetration judge_penetration(const Problem& problem, Equilibrium& equilibrium);
 
 }  // namespace dlo::energy_model

@@ -1,11 +1,11 @@
-#include "contact/held_past.hpp"
-
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <array>
 #include <cmath>
 #include <optional>
 #include <utility>
+
+#include "contact/penalty_polygon.hpp"
 
 namespace dlo::energy_model {
 namespace {

@@ -4,7 +4,6 @@
 #include <cmath>
 #include <limits>
 
-#include "contact/tangent_between.hpp"
 #include "dlo/energy_model/polygon.hpp"
 
 namespace dlo::energy_model {

@@ -1,6 +1,8 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <Eigen/Geometry>
+#include <algorithm>
 #include <vector>
 
 #include "base/deadline.hpp"
@@ -8,6 +10,20 @@
 #include "problem/span.hpp"
 
 namespace dlo::energy_model {
+
+/// Returns a polygon's tangent at s: between the middles of two segments the weighted sum of their
+/// tangents, normalised.
+/// @param middles  arc lengths, ascending;  @param tangents  of the segments, unit, 3 x middles
+[[nodiscard]] inline Eigen::Vector3d tangent_between(const Eigen::VectorXd& middles,
+                                                     const Eigen::Matrix3Xd& tangents, double s) {
+  const Eigen::Index last = middles.size() - 1;
+  const double* const after = std::lower_bound(middles.data(), middles.data() + last, s);
+  const Eigen::Index i = std::max<Eigen::Index>(1, after - middles.data());
+  if (last == 0) return tangents.col(0);
+  const double share = std::clamp((s - middles[i - 1]) / (middles[i] - middles[i - 1]), 0.0, 1.0);
+  const Eigen::Vector3d t = (1 - share) * tangents.col(i - 1) + share * tangents.col(i);
+  return t.norm() > 1e-3 ? t.normalized() : Eigen::Vector3d(tangents.col(i));
+}
 
 /// A coarse polygon in equilibrium on a span's obstacles, which determines the initial contacts.
 struct PenaltyPolygon {
@@ -48,5 +64,12 @@ enum class Descent {
 /// Minimises with all segments, starting from a polygon with few segments in equilibrium.
 [[nodiscard]] PenaltyPolygon rest_refined(const Span& span, const PenaltyPolygon& coarse,
                                           const Deadline& deadline, Descent descent = Descent::far);
+
+/// Returns copies of the span with pins next to its obstacles, so that shapes through the pins pass
+/// an obstacle on either side: first single obstacles, nearest to the anchor first, then pairs; at
+/// most ten copies. Between two grips such a shape continues to the second grip; beyond the
+/// outermost grip the rod hangs from the obstacle. There is no copy for half-spaces, for obstacles
+/// that the rod is too short to pass, and for paths through a rigid obstacle.
+[[nodiscard]] std::vector<Span> pinned_past_obstacles(const Span& span);
 
 }  // namespace dlo::energy_model

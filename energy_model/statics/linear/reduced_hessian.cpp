@@ -1,10 +1,13 @@
 #include "linear/reduced_hessian.hpp"
 
+#include <Eigen/Cholesky>
 #include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <numeric>
 #include <utility>
+#include <vector>
 
 #include "linear/dense_products.hpp"
 
@@ -242,11 +245,6 @@ std::optional<Eigen::VectorXd> ReducedHessian::lowest_mode_of_definite() {
   return Eigen::VectorXd(krylov_.leftCols(steps) * eigen.eigenvectors().col(steps - 1));
 }
 
-double ReducedHessian::least_constraint() const {
-  return constraints_ > 0 ? diagonal_.cwiseAbs().minCoeff()
-                          : std::numeric_limits<double>::infinity();
-}
-
 Eigen::MatrixXd ReducedHessian::matrix() const { return turned_.bottomRightCorner(free(), free()); }
 
 Eigen::VectorXd ReducedHessian::in_unknowns(const Eigen::VectorXd& v) const {
@@ -254,6 +252,93 @@ Eigen::VectorXd ReducedHessian::in_unknowns(const Eigen::VectorXd& v) const {
   x.tail(free()) = v;
   turn_back(x);
   return x;
+}
+
+Eigen::VectorXd smallest_eigenvalues(ReducedHessian& hessian, double above) {
+  const std::optional<double> smallest = hessian.smallest_eigenvalue_of_definite();
+  if (smallest && *smallest > above) return Eigen::VectorXd::Constant(1, *smallest);
+  const Eigen::MatrixXd projected = hessian.matrix();
+  if (projected.size() == 0) return {};
+  return Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd>(projected, Eigen::EigenvaluesOnly)
+      .eigenvalues();
+}
+
+Eigen::VectorXd direction_by_size(ReducedHessian& hessian, Eigen::Index index) {
+  if (index == 0) {
+    if (const std::optional<Eigen::VectorXd> mode = hessian.lowest_mode_of_definite()) {
+      return hessian.in_unknowns(*mode);
+    }
+  }
+  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> eigen(hessian.matrix());
+  std::vector<Eigen::Index> order(static_cast<std::size_t>(eigen.eigenvalues().size()));
+  std::iota(order.begin(), order.end(), Eigen::Index{0});
+  std::stable_sort(order.begin(), order.end(), [&](Eigen::Index a, Eigen::Index b) {
+    return std::abs(eigen.eigenvalues()[a]) < std::abs(eigen.eigenvalues()[b]);
+  });
+  return hessian.in_unknowns(eigen.eigenvectors().col(order.at(static_cast<std::size_t>(index))));
+}
+
+bool is_minimum(const Eigen::MatrixXd& hessian) {
+  Eigen::MatrixXd shifted = hessian;
+  shifted.diagonal().array() += neutral;
+  return Eigen::LLT<Eigen::Ref<Eigen::MatrixXd>>(shifted).info() == Eigen::Success;
+}
+
+std::optional<Eigen::VectorXd> negative_curvature_direction(const ReducedHessian& hessian) {
+  if (hessian.is_definite()) return std::nullopt;
+  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> eigen(hessian.matrix());
+  if (eigen.eigenvalues().size() == 0 || eigen.eigenvalues()[0] > -neutral) return std::nullopt;
+  return hessian.in_unknowns(eigen.eigenvectors().col(0)).normalized();
+}
+
+void NewtonSystem::compute(Eigen::MatrixXd& hessian, const Eigen::MatrixXd& jacobian) {
+  jacobian_ = jacobian;
+  orthogonal_.reset();
+  reduced_.constrain(jacobian);
+  if (jacobian.rows() == 0) {
+    reduced_.take(hessian);
+  } else {
+    hessian_.swap(hessian);
+    reduced_.compute(hessian_);
+  }
+  if (!reduced_.has_solutions()) lu_.compute(whole());
+}
+
+Eigen::MatrixXd NewtonSystem::whole() const {
+  const Eigen::Index n = hessian().rows();
+  const Eigen::Index m = jacobian_.rows();
+  Eigen::MatrixXd system(n + m, n + m);
+  system << hessian(), -jacobian_.transpose(), jacobian_, Eigen::MatrixXd::Zero(m, m);
+  return system;
+}
+
+void NewtonSystem::solve(const Eigen::VectorXd& right, Eigen::VectorXd& step) {
+  if (reduced_.has_solutions()) {
+    reduced_.solve(right, step);
+  } else {
+    step = lu_.solve(right);
+  }
+}
+
+bool NewtonSystem::is_met(const Eigen::VectorXd& right, const Eigen::VectorXd& step,
+                          double longest) {
+  const Eigen::Index n = hessian().rows();
+  const Eigen::Index m = jacobian_.rows();
+  left_ = right;
+  left_.head(n).noalias() -= hessian() * step.head(n);
+  left_.head(n).noalias() += jacobian_.transpose() * step.tail(m);
+  left_.tail(m).noalias() -= jacobian_ * step.head(n);
+  return left_.norm() <= 1e-6 * right.norm() && step.head(n).norm() <= longest;
+}
+
+Eigen::VectorXd NewtonSystem::minimum_norm_step(const Eigen::VectorXd& right) {
+  if (!orthogonal_) {
+    const Eigen::MatrixXd system = whole();
+    orthogonal_.emplace(system.rows(), system.cols());
+    orthogonal_->setThreshold(neutral / std::max(1.0, system.cwiseAbs().maxCoeff()));
+    orthogonal_->compute(system);
+  }
+  return orthogonal_->solve(right);
 }
 
 }  // namespace dlo::energy_model

@@ -1,6 +1,8 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <Eigen/LU>
+#include <Eigen/QR>
 #include <optional>
 
 namespace dlo::energy_model {
@@ -70,10 +72,6 @@ class ReducedHessian {
   /// converged. Returns std::nullopt if Z^T H Z is not positive definite.
   [[nodiscard]] std::optional<Eigen::VectorXd> lowest_mode_of_definite();
 
-  /// Smallest magnitude on R's diagonal; infinite without constraints. A rotation of the
-  /// constraints' gradients rotates the null space by up to its inverse times as much.
-  [[nodiscard]] double least_constraint() const;
-
   /// H; only valid without constraints.
   [[nodiscard]] const Eigen::MatrixXd& unconstrained() const { return turned_; }
   /// Z^T H Z, free x free.
@@ -109,6 +107,74 @@ class ReducedHessian {
   Eigen::MatrixXd shifted_;   // L of a shifted matrix
   Eigen::VectorXd scratch_, turned_right_;
   Eigen::MatrixXd krylov_;
+};
+
+/// Magnitude below which an eigenvalue counts as zero.
+inline constexpr double neutral = 1e-7;
+
+/// Returns the smallest eigenvalue of the reduced Hessian, overestimated by at most 1 %, as the
+/// only element if it is positive and exceeds `above`; otherwise all eigenvalues in ascending
+/// order. Returns an empty vector if the constraints leave no direction free.
+[[nodiscard]] Eigen::VectorXd smallest_eigenvalues(ReducedHessian& hessian, double above);
+
+/// Returns the eigenvector (in the unknowns, unit length) of the eigenvalue that is number `index`
+/// by magnitude, counted from 0 at the smallest.
+[[nodiscard]] Eigen::VectorXd direction_by_size(ReducedHessian& hessian, Eigen::Index index);
+
+/// Whether no eigenvalue of a symmetric matrix is below -`neutral`; only the lower half is read.
+[[nodiscard]] bool is_minimum(const Eigen::MatrixXd& hessian);
+
+/// Returns the unit eigenvector of the smallest eigenvalue if that is at most -`neutral`.
+[[nodiscard]] std::optional<Eigen::VectorXd> negative_curvature_direction(
+    const ReducedHessian& hessian);
+
+/// The linear system of Newton's method under constraints,
+///     H x - J^T mu = a,  J x = b.
+/// If H is positive definite on the null space of J, and the rows of J are independent, the system
+/// is factored there (ReducedHessian); otherwise it is factored as a whole. Buffers are kept from
+/// one compute() to the next.
+class NewtonSystem {
+ public:
+  /// Factors the system. @param[in,out] hessian  n x n, symmetric; its storage is swapped out, and
+  /// its content is lost
+  /// @param jacobian         m x n
+  void compute(Eigen::MatrixXd& hessian, const Eigen::MatrixXd& jacobian);
+
+  /// Whether the last compute() had these numbers of unknowns and constraints.
+  [[nodiscard]] bool is_of(Eigen::Index unknowns, Eigen::Index constraints) const {
+    return hessian().rows() == unknowns && jacobian_.rows() == constraints;
+  }
+  [[nodiscard]] const Eigen::MatrixXd& hessian() const {
+    return jacobian_.rows() > 0 ? hessian_ : reduced_.unconstrained();
+  }
+
+  /// Solves the system.
+  /// @param right      (a, b), n + m numbers
+  /// @param[out] step  (x, mu); must not alias `right`
+  void solve(const Eigen::VectorXd& right, Eigen::VectorXd& step);
+
+  /// Whether a step solves the system to 1e-6 of the norm of `right`, and its x is no longer than
+  /// `longest`.
+  [[nodiscard]] bool is_met(const Eigen::VectorXd& right, const Eigen::VectorXd& step,
+                            double longest);
+
+  /// Returns the minimum-norm least-squares solution, which has no component along near-null modes.
+  [[nodiscard]] Eigen::VectorXd minimum_norm_step(const Eigen::VectorXd& right);
+
+  /// H on the directions that the constraints leave free; without constraints, H itself.
+  [[nodiscard]] ReducedHessian& reduced_hessian() { return reduced_; }
+  [[nodiscard]] const ReducedHessian& reduced_hessian() const { return reduced_; }
+
+ private:
+  [[nodiscard]] Eigen::MatrixXd whole() const;
+
+  Eigen::MatrixXd hessian_;  // empty without constraints
+  Eigen::MatrixXd jacobian_;
+  ReducedHessian reduced_;
+  Eigen::PartialPivLU<Eigen::MatrixXd> lu_;
+  /// Orthogonal factorisation of the whole system; computed by the first minimum_norm_step().
+  std::optional<Eigen::CompleteOrthogonalDecomposition<Eigen::MatrixXd>> orthogonal_;
+  Eigen::VectorXd left_;
 };
 
 }  // namespace dlo::energy_model

@@ -2,14 +2,76 @@
 
 #include <Eigen/Core>
 #include <memory>
+#include <vector>
 
 #include "base/deadline.hpp"
 #include "base/pool.hpp"
-#include "newton/broyden.hpp"
-#include "newton/newton_factor.hpp"
+#include "linear/reduced_hessian.hpp"
 #include "strain/span_solution.hpp"
 
 namespace dlo::energy_model {
+
+/// Newton's linear system, factored at a point of a span's model. SpanSolution::factor passes it on
+/// to later steps, which need no new factorisation.
+struct NewtonFactor {
+  NewtonSystem system;
+  Eigen::VectorXd x, multipliers;  ///< the point
+  double scale = 1;                ///< scale of forces there, by which multipliers are divided
+
+  /// Distance of a solution from the point: unknowns, and multipliers divided by a scale of forces.
+  [[nodiscard]] double distance(const SpanSolution& solution, double forces) const {
+    return (solution.x - x).norm() + (solution.multipliers - multipliers).norm() / forces;
+  }
+};
+
+/// Scale of forces. It includes the multipliers, as grips may pull harder than weight and loads.
+[[nodiscard]] inline double scale_of_forces(const SpanSolution& solution, double load) {
+  return 1 + load + solution.multipliers.norm();
+}
+
+/// Makes factors. Buffers are reused once nobody holds their factor any more.
+class NewtonFactors {
+ public:
+  /// Factors the second variation of E - mu . c with the constraints at the solution, and stores
+  /// the result in solution.factor.
+  /// @param at    point of the model at solution.x
+  /// @param load  weight plus loads
+  void factor_at(SpanSolution& solution, SpanPoint& at, double load);
+
+  /// Factors a Hessian that does not belong to a point of the model.
+  [[nodiscard]] std::shared_ptr<NewtonFactor> factor(const Eigen::MatrixXd& hessian,
+                                                     const Eigen::MatrixXd& jacobian, double scale);
+
+ private:
+  [[nodiscard]] std::shared_ptr<NewtonFactor> make(const Eigen::MatrixXd& jacobian, double scale);
+
+  Pool<NewtonFactor> factors_;
+  Eigen::MatrixXd hessian_;  // Hessian of the next factor
+};
+
+/// Returns an approximate Hessian of a model with more coefficients: the Hessian of the model with
+/// fewer, and the identity for the new ones, where bending exceeds the effect of forces by the
+/// square of the order.
+[[nodiscard]] Eigen::MatrixXd prolonged(const Eigen::MatrixXd& hessian, const SpanEnergy& fewer,
+                                        const SpanEnergy& model);
+
+/// Broyden's updates of Newton steps that use the factor of an earlier point. The steps converge
+/// superlinearly and cost only products of vectors (Deuflhard, Newton Methods for Nonlinear
+/// Problems, algorithm QNERR).
+class BroydenSteps {
+ public:
+  /// Discards the updates; call it after a new factorisation.
+  void clear() { count_ = 0; }
+
+  /// Updates the step that the factor gives after the whole step `last`.
+  /// @param last          the whole step that was just taken
+  /// @param[in,out] next  the step from the factor; on return the updated step
+  void update(const Eigen::VectorXd& last, Eigen::VectorXd& next);
+
+ private:
+  Eigen::MatrixXd steps_;  // taken since the factorisation, one per column
+  Eigen::Index count_ = 0;
+};
 
 /// Norm of the grips' forces, divided by 1 + weight and loads, above which a result is rejected:
 /// residuals are measured relative to the forces.

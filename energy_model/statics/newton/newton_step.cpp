@@ -1,8 +1,10 @@
 #include "newton/newton_step.hpp"
 
 #include <cmath>
+#include <cstddef>
 
-#include "linear/free_directions.hpp"
+#include "linear/reduced_hessian.hpp"
+#include "newton/newton.hpp"
 
 namespace dlo::energy_model {
 namespace {
@@ -10,7 +12,51 @@ namespace {
 /// Maximum number of near-null modes that are deflated.
 constexpr Eigen::Index most_near_null = 3;
 
+/// Maximum number of updates; later steps are those of the factor.
+constexpr Eigen::Index most_secants = 12;
+
+/// Component of the next step along the last one, divided by the last one's length, above which the
+/// update would lengthen the step too much. No more updates are made until the next factorisation.
+constexpr double largest_share = 0.5;
+
 }  // namespace
+
+void NewtonFactors::factor_at(SpanSolution& solution, SpanPoint& at, double load) {
+  solution.factor.reset();
+  solution.model->hessian(at, solution.multipliers, hessian_);
+  solution.factor = make(at.jacobian, scale_of_forces(solution, load));
+  solution.factor->x = solution.x;
+  solution.factor->multipliers = solution.multipliers;
+}
+
+std::shared_ptr<NewtonFactor> NewtonFactors::factor(const Eigen::MatrixXd& hessian,
+                                                    const Eigen::MatrixXd& jacobian, double scale) {
+  hessian_ = hessian;
+  return make(jacobian, scale);
+}
+
+/// Factors hessian_, in buffers of the same size if there are some.
+std::shared_ptr<NewtonFactor> NewtonFactors::make(const Eigen::MatrixXd& jacobian, double scale) {
+  std::shared_ptr<NewtonFactor> result = factors_.take([&](const NewtonFactor& kept) {
+    return kept.system.is_of(hessian_.rows(), jacobian.rows());
+  });
+  result->system.compute(hessian_, jacobian);
+  result->scale = scale;
+  return result;
+}
+
+Eigen::MatrixXd prolonged(const Eigen::MatrixXd& hessian, const SpanEnergy& fewer,
+                          const SpanEnergy& model) {
+  const std::vector<Eigen::Index> places = model.unknowns().places_of(fewer.unknowns());
+  Eigen::MatrixXd result = Eigen::MatrixXd::Identity(model.size(), model.size());
+  for (std::size_t j = 0; j < places.size(); ++j) {
+    for (std::size_t i = 0; i < places.size(); ++i) {
+      result(places[i], places[j]) =
+          hessian(static_cast<Eigen::Index>(i), static_cast<Eigen::Index>(j));
+    }
+  }
+  return result;
+}
 
 void NewtonStep::borrow() {
   if (options_.first_hessian != nullptr) {
@@ -127,6 +173,22 @@ double NewtonStep::size_with_forces() const {
   if (m == 0) return size();
   return std::hypot(size(),
                     buffers_.step.tail(m).norm() / scale_of_forces(solution_, options_.load));
+}
+
+void BroydenSteps::update(const Eigen::VectorXd& last, Eigen::VectorXd& next) {
+  if (count_ >= most_secants) return;
+  if (steps_.rows() != last.size()) steps_.resize(last.size(), most_secants);
+  steps_.col(count_) = last;
+  for (Eigen::Index i = 0; i < count_; ++i) {
+    next += steps_.col(i).dot(next) / steps_.col(i).squaredNorm() * steps_.col(i + 1);
+  }
+  const double share = last.dot(next) / last.squaredNorm();
+  if (!(share < largest_share)) {
+    count_ = most_secants;
+    return;
+  }
+  next /= 1 - share;
+  ++count_;
 }
 
 }  // namespace dlo::energy_model

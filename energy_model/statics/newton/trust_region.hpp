@@ -1,11 +1,57 @@
 #pragma once
 
+#include <Eigen/Cholesky>
 #include <Eigen/Core>
+#include <limits>
+#include <optional>
 
 #include "base/deadline.hpp"
+#include "linear/reduced_hessian.hpp"
 #include "strain/span_solution.hpp"
 
 namespace dlo::energy_model {
+
+/// Constraint residual from which a descent starts, and the largest one that it leaves between
+/// steps.
+inline constexpr double loosest_gap = 1e-5;
+
+/// Buffers of restore(), kept from one call to the next.
+struct RestoreScratch {
+  SpanPoint trial;
+  Eigen::MatrixXd square, normal;
+  Eigen::LLT<Eigen::MatrixXd> factor;
+  Eigen::VectorXd along, step;
+};
+
+/// Reduces the constraint residual to |c| <= gap by steps that each have to decrease it:
+/// Levenberg-Marquardt steps, which become Gauss-Newton steps near the end,
+///     -J^T (J J^T + mu)^-1 c.
+/// @param[in,out] point  evaluated
+/// @param most_energy    energy above which the search is abandoned
+/// @return whether the residual was reduced to `gap`
+[[nodiscard]] bool restore(SpanSolution& solution, SpanPoint& point, double gap,
+                           RestoreScratch& scratch,
+                           double most_energy = std::numeric_limits<double>::infinity());
+
+struct TrustRegion {
+  double radius = 1;
+  /// Norm up to which the gradient counts as zero: only negative curvature then gives a step.
+  double gradient_tolerance = 0;
+  /// Length of Newton's step up to which the point counts as a minimum.
+  double least_step = 0;
+};
+
+/// Solves the trust-region subproblem: finds the step p of the free directions that minimises
+///     g.p + p.H p / 2
+/// in |p| <= radius (Moré and Sorensen, Computing a Trust Region Step, 1983):
+///     (H + mu) p = -g,  mu >= 0,  H + mu positive semidefinite,
+/// with mu = 0 or |p| between 0.75 and 1.01 of the radius. If the gradient has no component along
+/// the eigenvector of the smallest eigenvalue (the hard case), p is extended along that eigenvector
+/// to the radius.
+/// @return std::nullopt near a minimum, where all eigenvalues are above -neutral
+[[nodiscard]] std::optional<Eigen::VectorXd> trust_region_step(ReducedHessian& hessian,
+                                                               const Eigen::VectorXd& gradient,
+                                                               const TrustRegion& region);
 
 /// Trust-region radius in the unknowns: of the first step of a descent, and the largest one.
 inline constexpr double first_radius = 1;
@@ -39,5 +85,16 @@ struct TrustRegionOptions {
 /// eigenvalue below -neutral, or that a minimum is within `nearest`. The multipliers are stored in
 /// the solution.
 void descend_in_trust_region(SpanSolution& solution, const TrustRegionOptions& options);
+
+/// Descends from solution.x to a point near a minimum of the energy under the constraints c = 0,
+/// which need not hold at intermediate points. The method of multipliers minimises
+///     E - mu.c + kappa |c|^2 / 2
+/// repeatedly, with mu -> mu - kappa c and a growing kappa, each time by Newton's method in a trust
+/// region (Moré and Sorensen). If grips stretch a rod nearly to its length, few shapes satisfy the
+/// constraints, all of them close to straight. Restoring c = 0 from another shape fails there;
+/// penalty springs that become stiffer do not.
+///
+/// Status `converged` means that |c| and the gradient are small enough for Newton's method on both.
+void descend_by_augmented_lagrangian(SpanSolution& solution, const TrustRegionOptions& options);
 
 }  // namespace dlo::energy_model

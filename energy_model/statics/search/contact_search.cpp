@@ -9,11 +9,9 @@
 #include <utility>
 
 #include "contact/clearance.hpp"
-#include "contact/held_past.hpp"
 #include "contact/penalty_polygon.hpp"
 #include "contact/update_contacts.hpp"
 #include "search/active_set.hpp"
-#include "search/follow_contacts.hpp"
 #include "span/found.hpp"
 #include "span/nearby_equilibria.hpp"
 #include "span/span_solver.hpp"
@@ -47,11 +45,6 @@ constexpr const char* past_obstacles = "shapes that pass one or two obstacles on
 /// divided by the span's length. Polygons in equilibrium are determined to 1e-7; different ones are
 /// further apart.
 constexpr double same_coarse_polygon = 1e-3;
-
-bool is_same_coarse_polygon(const PenaltyPolygon& a, const PenaltyPolygon& b, double length) {
-  return a.points.cols() == b.points.cols() &&
-         (a.points - b.points).colwise().norm().maxCoeff() < same_coarse_polygon * length;
-}
 
 /// Search for equilibria with contacts. @param found  results of this and other searches of the
 /// span
@@ -104,7 +97,9 @@ class ContactSearch {
       if (options_.passing_starts != nullptr) ++*options_.passing_starts;
       PenaltyPolygon polygon = coarse_polygon(arch_field(start));
       const bool is_new = std::none_of(known.begin(), known.end(), [&](const auto& other) {
-        return is_same_coarse_polygon(polygon, other, span_.length);
+        return polygon.points.cols() == other.points.cols() &&
+               (polygon.points - other.points).colwise().norm().maxCoeff() <
+                   same_coarse_polygon * span_.length;
       });
       if (polygon.at_rest && is_new) known.push_back(std::move(polygon));
     }

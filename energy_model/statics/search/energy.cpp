@@ -9,7 +9,7 @@
 #include "base/found_equilibria.hpp"
 #include "base/legendre.hpp"
 #include "base/require.hpp"
-#include "contact/penetration.hpp"
+#include "contact/clearance.hpp"
 #include "dlo/energy_model/balance.hpp"
 #include "dlo/energy_model/soft_line.hpp"
 #include "problem/rod_law.hpp"

@@ -9,7 +9,7 @@
 
 #include "base/require.hpp"
 #include "base/sized_samples.hpp"
-#include "contact/tangent_between.hpp"
+#include "contact/penalty_polygon.hpp"
 #include "search/twist_path.hpp"
 #include "span/span_traits.hpp"
 

@@ -10,9 +10,8 @@
 #include <utility>
 
 #include "base/legendre.hpp"
-#include "certify/enough_terms.hpp"
-#include "linear/free_directions.hpp"
-#include "newton/augmented_lagrangian.hpp"
+#include "certify/piece_cuts.hpp"
+#include "linear/reduced_hessian.hpp"
 #include "newton/trust_region.hpp"
 #include "search/active_set.hpp"
 #include "span/found.hpp"

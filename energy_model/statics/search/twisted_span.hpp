@@ -5,9 +5,8 @@
 #include "dlo/energy_model/equilibrium.hpp"
 #include "dlo/energy_model/problem.hpp"
 #include "problem/split.hpp"
-#include "search/remembered.hpp"
+#include "search/untwisted_span.hpp"
 #include "span/span_options.hpp"
-#include "span/span_workspace.hpp"
 #include "strain/span_solution.hpp"
 
 namespace dlo::energy_model {

@@ -1,16 +1,29 @@
 #include "search/untwisted_span.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <utility>
 
+#include "contact/penalty_polygon.hpp"
+#include "kirchhoff/rod_mesh.hpp"
+#include "kirchhoff/rod_span.hpp"
 #include "search/contact_search.hpp"
 #include "search/known_shape.hpp"
-#include "search/polygon_fields.hpp"
 #include "span/found.hpp"
 #include "span/span_solver.hpp"
 
 namespace dlo::energy_model {
 namespace {
+
+constexpr std::size_t most_fields = 12;
+
+/// Maximum number of intervals of a polygon that is relaxed again.
+constexpr double most_field_intervals = 600;
+
+Eigen::VectorXd middles_of(const RodMesh& mesh) {
+  const Eigen::Index count = mesh.intervals();
+  return (mesh.s.head(count) + mesh.s.tail(count)) / 2;
+}
 
 constexpr const char* from_polygons = "lowest minima of coarse polygons, by Newton's method";
 
@@ -51,6 +64,67 @@ SpanSolution from_start(const Span& span, SpanOptions options, SpanWorkspace& wo
   return std::move(search_untwisted(span, options, workspace).front());
 }
 
+/// The lowest minima of a coarse polygon, lowest first: the initial guesses of solve_exact(). For a
+/// planar span they include minima in its plane and out of it. There are none if clamps transmit a
+/// torque, which the polygon does not model.
+class PolygonFields {
+ public:
+  PolygonFields(const Problem& problem, const PlacedSpan& placed, const Deadline& deadline)
+      : deadline_(deadline), reversed_(placed.reversed), frame_(placed.frame) {
+    const auto is_clamp = [](const Span::Hold& hold) { return hold.direction.has_value(); };
+    if (std::any_of(placed.span.holds.begin(), placed.span.holds.end(), is_clamp)) return;
+    const double begin = placed.reversed ? placed.start / problem.length - placed.span.length
+                                         : placed.start / problem.length;
+    const std::vector<RodSpan> spans = cut_at_clamps(problem);
+    span_ = *std::min_element(spans.begin(), spans.end(), [&](const auto& a, const auto& b) {
+      return std::abs(a.begin - begin) < std::abs(b.begin - begin);
+    });
+    // Resolves boundary layers of the loads, but no more than a coarse polygon needs.
+    const double load = std::min(total_load(*span_), 1e4);
+    longest_ = std::min(span_->length / 16, 1 / std::sqrt(std::max(load, 1.0)));
+    const RodMesh mesh = make_mesh(*span_, longest_);
+    minima_ = polygon_minima(*span_, mesh, deadline).found;
+    if (minima_.size() > most_fields) minima_.resize(most_fields);
+  }
+
+  [[nodiscard]] std::size_t size() const { return minima_.size(); }
+  /// Returns the tangents of one minimum, in the span's frame. If the grips' forces bend it within
+  /// less than a segment, it is first relaxed with shorter segments.
+  [[nodiscard]] TangentField field(std::size_t index) const {
+    const RelaxedPolygon& minimum = minima_[index];
+    const RodMesh mesh = make_mesh(*span_, longest_);
+    Eigen::VectorXd middles = middles_of(mesh);
+    Eigen::Matrix3Xd tangents = minimum.tangents();
+    const double force =
+        minimum.force.colwise().norm().maxCoeff() / least_bending_stiffness(*span_);
+    const double resolving =
+        std::max(1 / std::sqrt(std::max(force, 1.0)), span_->length / most_field_intervals);
+    if (longest_ > 1.1 * resolving) {
+      const RodMesh finer = make_mesh(*span_, resolving);
+      middles = middles_of(finer);
+      tangents = relax_on(*span_, finer, mesh, minimum, deadline_).tangents();
+    }
+    return [middles = std::move(middles), tangents = std::move(tangents), length = span_->length,
+            reversed = reversed_, frame = frame_](const Eigen::VectorXd& s) {
+      Eigen::Matrix3Xd result(3, s.size());
+      for (Eigen::Index q = 0; q < s.size(); ++q) {
+        const double at = reversed ? length - s[q] : s[q];
+        const Eigen::Vector3d t = frame * tangent_between(middles, tangents, at);
+        result.col(q) = reversed ? Eigen::Vector3d(-t) : t;
+      }
+      return result;
+    };
+  }
+
+ private:
+  Deadline deadline_;
+  bool reversed_;
+  Eigen::Matrix3d frame_;
+  std::optional<RodSpan> span_;
+  double longest_ = 0;  // longest interval of the mesh
+  std::vector<RelaxedPolygon> minima_;
+};
+
 /// Adds the equilibria found from minima of a coarse polygon, in the plane and out of it.
 void add_polygon_minima(const PlacedSpan& placed, const Problem& problem, SpanOptions options,
                         SpanWorkspace& workspace, Found& found) {
@@ -78,6 +152,34 @@ void add_polygon_minima(const PlacedSpan& placed, const Problem& problem, SpanOp
 }
 
 }  // namespace
+
+void Remembered::remember(const SpanSolution& found, const PlacedSpan& placed) {
+  before = std::exchange(last, {});
+  before.factor = nullptr;
+  frame = placed.frame;
+  if (!succeeded(found.status) && !found.is_singular_point()) return;
+  last = {found.model, found.x, found.multipliers, found.factor};
+  point = found.at_x();
+}
+
+TangentField Remembered::field(const PlacedSpan& placed) const {
+  const Eigen::Matrix3d turn = placed.frame * frame.transpose();
+  const bool rolls = placed.span.has_material_directors() && !planar();
+  return [model = last.model, point = point, turn, rolls](const Eigen::VectorXd& s) {
+    StartShape shape(turn * point->tangents());
+    if (rolls) shape.roll = roll_of(point->tangents(), point->d1());
+    const Eigen::VectorXd& nodes = model->nodes();
+    if (s.size() == nodes.size() && s == nodes) return shape;
+    StartShape nearest(Eigen::Matrix3Xd(3, s.size()), Eigen::VectorXd(rolls ? s.size() : 0));
+    for (Eigen::Index q = 0; q < s.size(); ++q) {
+      Eigen::Index at = 0;
+      (nodes.array() - s[q]).abs().minCoeff(&at);
+      nearest.tangents.col(q) = shape.tangents.col(at);
+      if (rolls) nearest.roll[q] = shape.roll[at];
+    }
+    return nearest;
+  };
+}
 
 std::vector<SpanSolution> solve_untwisted(const PlacedSpan& placed, const Problem& problem,
                                           SpanOptions options, const Equilibrium* shape,

@@ -1,16 +1,44 @@
 #pragma once
 
+#include <Eigen/Core>
+#include <cstddef>
+#include <memory>
+#include <optional>
 #include <vector>
 
+#include "base/deadline.hpp"
 #include "dlo/energy_model/equilibrium.hpp"
 #include "dlo/energy_model/problem.hpp"
+#include "kirchhoff/relaxed_polygon.hpp"
 #include "problem/split.hpp"
-#include "search/remembered.hpp"
 #include "span/span_options.hpp"
-#include "span/span_workspace.hpp"
+#include "span/span_solver.hpp"
 #include "strain/span_solution.hpp"
 
 namespace dlo::energy_model {
+
+/// A span's last solution, from which the next one may start; empty after a failure.
+struct Remembered {
+  KnownShape last;
+  KnownShape before;                                    ///< the one before it, without a factor
+  std::shared_ptr<const SpanPoint> point;               ///< point of `last`
+  Eigen::Matrix3d frame = Eigen::Matrix3d::Identity();  ///< PlacedSpan::frame
+
+  [[nodiscard]] bool is_known() const { return last.model != nullptr; }
+  [[nodiscard]] bool planar() const { return !is_known() || last.model->span().planar; }
+
+  void remember(const SpanSolution& found, const PlacedSpan& placed);
+  /// Returns the remembered shape in the frame of a span, which may differ. Exact at the remembered
+  /// nodes; other arc lengths get the value of the nearest node.
+  [[nodiscard]] TangentField field(const PlacedSpan& placed) const;
+};
+
+/// Memory of a span that clamps twist, for its solution without twist too.
+struct RememberedTwist {
+  Remembered untwisted, twisted;
+  double twist = 0;   ///< twist of `twisted` [rad]
+  double turned = 0;  ///< rotation of the end's frame relative to the untwisted rod's [rad]
+};
 
 /// Solves a span of a problem without the twist from clamps: from a known shape, if there is one;
 /// otherwise by a search, and from minima of coarse polygons if the search finds no stable shape,

@@ -5,9 +5,10 @@
 
 #include "base/legendre.hpp"
 #include "base/minimise.hpp"
-#include "certify/enough_terms.hpp"
+#include "certify/piece_cuts.hpp"
 #include "frames/piece.hpp"
 #include "newton/trust_region.hpp"
+#include "span/span_options.hpp"
 #include "span/span_traits.hpp"
 
 namespace dlo::energy_model {
@@ -152,6 +153,27 @@ void LocalSolver::minimise(SpanSolution& solution) const {
   // Newton's method has to verify the shape anyway.
   solution.status = result.is_a_start() ? SolveStatus::roundoff_limited : result.status;
   solution.message = result.message;
+}
+
+std::shared_ptr<SpanEnergy> SpanWorkspace::model(const Span& span, int terms) {
+  std::shared_ptr<SpanEnergy> model =
+      models_.take([terms](const SpanEnergy& kept) { return kept.terms() == terms; });
+  model->reset(span, terms);
+  return model;
+}
+
+SpanSolution SpanWorkspace::empty_solution(const Span& span, int terms) {
+  SpanSolution solution;
+  solution.model = model(span, terms);
+  solution.terms = terms;
+  return solution;
+}
+
+SpanSolution SpanWorkspace::with_terms(const SpanSolution& solution, int terms) {
+  SpanSolution other = empty_solution(solution.model->span(), terms);
+  other.x = other.model->prolong(*solution.model, solution.x);
+  other.multipliers = other.model->prolong_multipliers(*solution.model, solution.multipliers);
+  return other;
 }
 
 }  // namespace dlo::energy_model

@@ -1,9 +1,10 @@
 #pragma once
 
+#include <Eigen/Core>
+#include <memory>
+
 #include "span/span_options.hpp"
 #include "span/span_traits.hpp"
-#include "span/span_workspace.hpp"
-#include "span/start_ranking.hpp"
 #include "strain/span_energy.hpp"
 #include "strain/span_solution.hpp"
 
@@ -22,6 +23,16 @@ inline constexpr int few_terms = 10;
 
 /// Largest number of unknowns of a trust-region descent; a step costs its cube.
 inline constexpr Eigen::Index most_descended = 160;
+
+/// An initial guess and, if starts were ranked, its unknowns in the model of the ranking.
+struct Start {
+  TangentField field;
+  std::shared_ptr<const SpanEnergy> model;
+  Eigen::VectorXd x;
+  /// Cost: energy plus that of springs at the grips, or energy alone once the constraints are
+  /// satisfied.
+  double cost = 0;
+};
 
 /// Converges from initial guesses to equilibria of a span, with few coefficients or all that its
 /// load needs.

@@ -2,14 +2,13 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <memory>
 #include <utility>
 
 #include "base/legendre.hpp"
 #include "certify/certify.hpp"
-#include "certify/enough_terms.hpp"
 #include "certify/piece_cuts.hpp"
-#include "span/contact_pieces.hpp"
 #include "span/span_traits.hpp"
 #include "strain/second_derivatives.hpp"
 
@@ -183,14 +182,69 @@ class Refinement {
   const SpanTraits& traits_;
 };
 
+constexpr int most_contact_rounds = 16;
+
+/// Largest number of coefficients in rounds before the ends are nearly accurate; each element is
+/// short.
+constexpr int first_round_terms = 16;
+
+/// Movement of the ends, divided by the rod length, below which coefficients are added, and below
+/// which the iteration ends.
+constexpr double ends_nearly_settled = 1e-4;
+constexpr double ends_settled = 1e-9;
+
+/// Returns the largest movement of an end; infinity if the number of ends has changed.
+double moved_by(const std::vector<double>& before, const std::vector<double>& now) {
+  if (before.size() != now.size()) return std::numeric_limits<double>::infinity();
+  double moved = 0;
+  for (std::size_t i = 0; i < now.size(); ++i) {
+    moved = std::max(moved, std::abs(now[i] - before[i]));
+  }
+  return moved;
+}
+
+/// Solves for an equilibrium on soft obstacles with elements that end where contact begins or ends
+/// (Span::contact_ends). The force per length has a kink there, which no series represents. The
+/// ends of each round are those of the previous shape. Their error changes the shape by about its
+/// square, so that a few rounds determine both.
+SpanSolution with_found_pieces(LocalSolver& on, SpanSolution solution) {
+  Span span = on.span();
+  std::vector<double> ends = contact_ends(solution);
+  bool refined = false;
+  for (int round = 0; round < most_contact_rounds && solution.is_equilibrium(); ++round) {
+    if (on.out_of_time()) {
+      solution.finish(SolveStatus::time_limit);
+      return solution;
+    }
+    const bool same_pieces = ends == span.contact_ends;
+    span.contact_ends = ends;
+    LocalSolver own(span, on.options(), on.workspace());
+    if (!same_pieces) {
+      const int terms = refined ? solution.terms : std::min(solution.terms, first_round_terms);
+      solution = on_other_pieces(own, solution, on.options().terms > 0 ? solution.terms : terms);
+      own.newton(solution);
+      if (!solution.is_equilibrium()) own.descend(solution);
+    }
+    if (refined || same_pieces) solution = Refinement(own).run(std::move(solution));
+    if (!solution.is_equilibrium()) return solution;
+    std::vector<double> now = contact_ends(solution);
+    const double moved = moved_by(ends, now);
+    if ((refined || same_pieces) && moved <= ends_settled) return solution;
+    refined = refined || moved <= ends_nearly_settled;
+    ends = std::move(now);
+  }
+  if (solution.is_equilibrium()) {
+    solution.resolved = false;
+    solution.fail("the ends of contact with soft obstacles were not found");
+  }
+  return solution;
+}
+
 }  // namespace
 
 SpanSolution refined(LocalSolver& on, SpanSolution solution) {
-  const auto refine = [](LocalSolver& settled, SpanSolution equilibrium) {
-    return Refinement(settled).run(std::move(equilibrium));
-  };
-  if (on.span().soft_obstacles.empty()) return refine(on, std::move(solution));
-  return with_found_pieces(on, std::move(solution), refine);
+  return on.span().soft_obstacles.empty() ? Refinement(on).run(std::move(solution))
+                                          : with_found_pieces(on, std::move(solution));
 }
 
 std::optional<Span> adapted_mesh(const LocalSolver& on, const SpanSolution& shape) {
@@ -241,6 +295,17 @@ SpanSolution finish(SpanSolution solution, const SpanOptions& options, SpanWorks
   const Span own = solution.model->span();
   LocalSolver on(own, options, workspace);
   return judged(refined(on, std::move(solution)), options, workspace);
+}
+
+SpanSolution on_other_pieces(LocalSolver& on, const SpanSolution& solution, int terms) {
+  SpanSolution other = on.empty_solution(terms);
+  const TangentField field = solution.model->field(solution.x);
+  other.x = other.model->fit(field(other.model->nodes()));
+  if (other.model->constraints() == solution.multipliers.size()) {
+    other.multipliers = solution.multipliers;
+  }
+  other.evaluations = solution.evaluations;
+  return other;
 }
 
 }  // namespace dlo::energy_model

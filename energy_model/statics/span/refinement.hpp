@@ -26,4 +26,9 @@ namespace dlo::energy_model {
 [[nodiscard]] SpanSolution finish(SpanSolution solution, const SpanOptions& options,
                                   SpanWorkspace& workspace);
 
+/// Fits the shape of a solution, by its tangents, on a span with other elements. The result is not
+/// an equilibrium yet.
+[[nodiscard]] SpanSolution on_other_pieces(LocalSolver& on, const SpanSolution& solution,
+                                           int terms);
+
 }  // namespace dlo::energy_model

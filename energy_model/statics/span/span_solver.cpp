@@ -10,17 +10,52 @@
 
 #include "base/legendre.hpp"
 #include "certify/certify.hpp"
+#include "newton/trust_region.hpp"
 #include "span/found.hpp"
-#include "span/given_start.hpp"
 #include "span/local_solver.hpp"
 #include "span/nearby_equilibria.hpp"
-#include "span/plain_cantilever.hpp"
 #include "span/refinement.hpp"
 #include "span/span_starts.hpp"
-#include "span/start_ranking.hpp"
 
 namespace dlo::energy_model {
 namespace {
+
+/// Sum of weight and loads [EI/l^2] above which a rod is closer to its soft limit than to the
+/// straight rod.
+constexpr double soft_load = 12;
+
+/// Whether all tangents of a plain cantilever that is pulled in one direction lie between the
+/// clamp's direction and the load's, on the shorter way. An equilibrium with this property is the
+/// lowest one. With the angle chi from the load's opposite and the force n(s) of everything beyond
+/// s,
+///     chi'' = -n sin(chi),  chi(0) given,  chi'(length) = 0,
+/// the energy's minimum has chi in [0, pi], as reflecting values outside does not raise the energy.
+/// There is only one such solution, because sin(chi) / chi decreases (Brezis and Oswald, 1986). A
+/// second one, chi = 0, exists only if the clamp points against the load; it is unstable unless it
+/// is the only one.
+bool turns_to_load(const Span& span, const Eigen::Matrix3Xd& tangents) {
+  constexpr double rounding = 1e-9;  // sine of the angle error by truncation
+  Eigen::Vector3d force = span.weight_between(0, span.length);
+  for (const Span::Load& load : span.loads) force += load.force;
+  const Eigen::Vector3d across(-force.y(), force.x(), 0);
+  const double side = std::copysign(1.0, across.dot(*span.start_direction));
+  for (Eigen::Index q = 0; q < tangents.cols(); ++q) {
+    if (side * across.dot(tangents.col(q)) < -rounding * force.norm()) return false;
+  }
+  return true;
+}
+
+/// Bends the straight rod in proportion to the load's gradient if that lowers its energy; otherwise
+/// leaves it straight.
+void bend_slightly(SpanSolution& solution, NewtonBuffers& buffers) {
+  const SpanEnergy& model = *solution.model;
+  const std::shared_ptr<SpanPoint> straight = buffers.new_point(model);
+  const std::shared_ptr<SpanPoint> bent = buffers.new_point(model);
+  solution.evaluate(Eigen::VectorXd::Zero(model.size()), *straight);
+  solution.evaluate(-straight->gradient, *bent);
+  solution.point = bent->energy < straight->energy ? bent : straight;
+  solution.x = solution.point->x;
+}
 
 /// Number of initial guesses, in the order of their energy, that the search for the lowest minimum
 /// follows.
@@ -47,6 +82,27 @@ std::string starts_of(const Span& span) {
                                 ? "shapes of a soft rod below its clamp"
                                 : "arches, S-shapes and loops between grips";
   return span.has_material_directors() ? "the stress-free shape, " + plain : plain;
+}
+
+/// Solves for the lowest shape of a plain cantilever that is pulled in one direction; it is not
+/// certified out of the plane. Newton's method is tried first. If it converges to another shape, a
+/// descent follows from the soft limit.
+SpanSolution plain_cantilever(LocalSolver& on) {
+  SpanSolution at_once = on.empty_solution(on.terms());
+  if (on.traits().load < soft_load) {
+    bend_slightly(at_once, on.workspace().newton());
+  } else {
+    at_once.x = at_once.model->fit(soft_field(on.span())(at_once.model->nodes()));
+  }
+  on.newton(at_once);
+  at_once = refined(on, std::move(at_once));
+  if (succeeded(at_once.status) && at_once.evaluations <= on.options().max_evaluations &&
+      turns_to_load(on.span(), at_once.at_x()->tangents())) {
+    return at_once;
+  }
+  SpanSolution solution = refined(on, on.from_start(Start{soft_field(on.span())}));
+  solution.evaluations += at_once.evaluations;
+  return solution;
 }
 
 class Search {
@@ -160,24 +216,74 @@ class Search {
     return starts;
   }
 
+  /// Returns the starts, cheapest first.
   [[nodiscard]] std::vector<Start> ranked_starts() {
     std::vector<Start> ranked = starts();
     const int coarse = on_.coarse_terms();
     // If the ranking uses the number of coefficients of the descent, its fits are reused.
     const bool keeps = coarse <= few_terms && span_.holds.empty() && span_.contacts.empty();
-    const std::shared_ptr<SpanEnergy> model = workspace_.model(
+    SpanSolution trial = workspace_.empty_solution(
         span_, keeps ? coarse : std::max(8, std::min(traits_.natural_terms, coarse)));
-    found_.spend(rank_starts(
-        ranked,
-        {.model = model,
-         .load = traits_.load,
-         .followed = followed(),
-         .keeps_unknowns = model->terms() == on_.coarse_terms(),
-         .stiffness = traits_.stiffness,
-         .satisfies_constraints = model->constraints() > 0 && !traits_.taut &&
-                                  !model->has_soft_obstacles() && !span_.has_material_directors(),
-         .deadline = &options_.deadline}));
+    const bool satisfies_constraints = trial.model->constraints() > 0 && !traits_.taut &&
+                                       !trial.model->has_soft_obstacles() &&
+                                       !span_.has_material_directors();
+    satisfies_constraints ? rank_with_constraints(trial, ranked) : rank_with_springs(trial, ranked);
+    found_.spend(trial.evaluations);
+    std::stable_sort(ranked.begin(), ranked.end(), is_cheaper);
     return ranked;
+  }
+
+  static bool is_cheaper(const Start& a, const Start& b) { return a.cost < b.cost; }
+
+  void rank_with_springs(SpanSolution& trial, std::vector<Start>& starts) const {
+    SpanPoint point;
+    for (Start& start : starts) {
+      trial.evaluate(trial.model->fit(start.field(trial.model->nodes())), point);
+      if (trial.terms == on_.coarse_terms()) {
+        start.model = trial.model;
+        start.x = point.x;
+      }
+      start.cost = point.energy + traits_.stiffness / 2 * point.residual.squaredNorm();
+    }
+  }
+
+  /// Ranks starts by their energy once the constraints are satisfied, for those starts that may
+  /// still be among the ones followed in any case. With a remaining constraint residual a shape
+  /// would seem cheaper than any that satisfies the constraints.
+  void rank_with_constraints(SpanSolution& trial, std::vector<Start>& starts) const {
+    // Springs at the grips, as at the begin of a penalty method: a lower bound of the cost of the
+    // residual.
+    const double kappa = 100 * (1 + traits_.load);
+    SpanEnergy& model = *trial.model;
+    for (Start& start : starts) {
+      const SpanEnergy::Estimate seen = model.estimate(start.field(model.nodes()).tangents);
+      start.cost = seen.energy + kappa / 2 * seen.gap * seen.gap;
+    }
+    std::stable_sort(starts.begin(), starts.end(), is_cheaper);
+    std::vector<double> energies;  // lowest energies of starts that satisfy the constraints
+    SpanPoint point;
+    RestoreScratch scratch;
+    for (Start& start : starts) {
+      if (on_.out_of_time()) return;
+      const double most =
+          energies.size() < followed() ? std::numeric_limits<double>::infinity() : energies.back();
+      const StartShape shape = start.field(model.nodes());
+      const SpanEnergy::Estimate seen = model.estimate(shape.tangents);
+      // A fit with few coefficients is smoother, and satisfying the constraints may straighten it.
+      if (seen.energy - seen.bending / 2 > most) continue;
+      constexpr int no_corrections = 0;
+      trial.evaluate(model.fit(shape, no_corrections), point);
+      if (!restore(trial, point, loosest_gap, scratch, most)) {
+        start.cost = std::max(start.cost, most);
+        continue;
+      }
+      start.model = trial.model;
+      start.x = point.x;
+      start.cost = point.energy;
+      energies.insert(std::upper_bound(energies.begin(), energies.end(), point.energy),
+                      point.energy);
+      if (energies.size() > followed()) energies.pop_back();
+    }
   }
 
   /// Searches in space for a curved rod or a strip in a plane, if an equilibrium found is a saddle

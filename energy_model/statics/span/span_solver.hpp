@@ -3,7 +3,6 @@
 #include <vector>
 
 #include "span/span_options.hpp"
-#include "span/span_workspace.hpp"
 #include "strain/span_solution.hpp"
 
 namespace dlo::energy_model {

@@ -5,7 +5,7 @@
 #include <sstream>
 #include <stdexcept>
 
-#include "certify/enough_terms.hpp"
+#include "certify/piece_cuts.hpp"
 #include "frames/piece.hpp"
 #include "problem/segments.hpp"
 

@@ -39,4 +39,49 @@ struct ContactPlace {
 [[nodiscard]] Eigen::Vector3d moment_about_anchor(const Eigen::MatrixX3d& tangents,
                                                   const Eigen::MatrixX3d& carried);
 
+/// Forces of a rigid obstacle on one contact, positive away from the obstacle: concentrated forces
+/// at the begin and the end of the part in contact, which coincide for a contact at one point, and
+/// a pressure between them.
+struct ContactForce {
+  Eigen::Vector3d force = Eigen::Vector3d::Zero();   ///< resultant
+  Eigen::Vector3d moment = Eigen::Vector3d::Zero();  ///< moment of all rows about the span's anchor
+  double total = 0;                                  ///< sum of the forces along the normals
+  double begin = 0, end = 0;  ///< concentrated forces; `end` is 0 for a contact at one point
+  /// Smallest and largest force per length along the part; 0 for a contact at one point.
+  double least_pressure = 0;
+  double largest_pressure = 0;
+  /// Smallest concentrated force inside the part, at loads, grips and section changes. Jumps
+  /// between the series of two elements elsewhere are truncation errors and do not count.
+  double least_inner = 0;
+  /// Force, away from the obstacle, that the multipliers also exert on a grip at the begin or the
+  /// end of the part. It is included in `moment`, and belongs to the grip, not to the obstacle.
+  double held_begin = 0, held_end = 0;
+};
+
+/// Indices of the multipliers of ContactRows that belong to one contact: the multiplier of the
+/// clearance at its begin, or of the smallest clearance (-1: a grip holds the contact), and the
+/// multipliers of the slope on each of its elements.
+struct ContactSeries {
+  struct Slope {
+    Eigen::Index first = 0, count = 0;
+    double length = 0;          ///< length of the element
+    bool concentrates = false;  ///< whether a load, a section change or a grip is at its begin
+  };
+  Eigen::Index clearance = -1;
+  std::vector<Slope> slopes;
+  bool held_at_begin = false, held_at_end = false;  ///< whether a grip is there
+
+  /// Returns the multipliers of all contacts with zeros for those of other contacts.
+  [[nodiscard]] Eigen::VectorXd own(const Eigen::VectorXd& multipliers) const;
+};
+
+/// Length of a part, divided by the rod length, below which a few moments of the slope describe it.
+/// With more moments rounding would dominate Newton's last step and the forces derived from it.
+inline constexpr double short_part = 5e-3;
+
+/// Returns the forces of one contact from the multipliers' series N(s) = sum mu phi(s), without the
+/// direction of the resultant. @param multipliers  of the rows of all contacts
+[[nodiscard]] ContactForce force_of_series(const ContactSeries& rows,
+                                           const Eigen::VectorXd& multipliers);
+
 }  // namespace dlo::energy_model

@@ -9,7 +9,7 @@
 #include "frames/piece.hpp"
 #include "frames/position_operator.hpp"
 #include "problem/span.hpp"
-#include "strain/contact_forces.hpp"
+#include "strain/contact_place.hpp"
 
 namespace dlo::energy_model {
 

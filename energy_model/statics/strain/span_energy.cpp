@@ -8,7 +8,7 @@
 
 #include "base/legendre.hpp"
 #include "base/spin.hpp"
-#include "linear/free_directions.hpp"
+#include "linear/reduced_hessian.hpp"
 
 namespace dlo::energy_model {
 namespace {
