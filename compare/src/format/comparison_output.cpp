@@ -16,15 +16,13 @@
 namespace dlo::cli {
 namespace {
 
-void add_budget(std::string& out, const compare::Comparison& comparison) {
-  // A share is the projection of a part on the total, so that the shares add up to 1; a part
-  // orthogonal to the total has a length in mm, but no share.
-  append(out, "  error budget    RMS, and share of the total {:.4g} mm with sign\n",
-         comparison.budget.total_m * 1e3);
-  for (const auto& [name, part] : compare::shown_parts(comparison)) {
-    append(out, "                  {:<17}{:>9.4g} mm {:>9.2f} %\n", name,
-           compare::shown(part->rms_m, comparison.length) * 1e3, part->share * 100);
-  }
+/// Returns the parts of the error budget. A share is the projection of a part on the total, so that
+/// the shares add up to 1; a part orthogonal to the total has a length, but no share.
+Json budget_rows(const compare::Comparison& comparison) {
+  return json_list(compare::shown_parts(comparison), [](const auto& row) -> Json {
+    return {
+        {"part", row.first}, {"rms_m", row.second->rms_m}, {"share_of_total", row.second->share}};
+  });
 }
 
 }  // namespace
@@ -36,46 +34,6 @@ void add_largest_and_rms(std::string& out, const compare::Deviation& d) {
     append(out, " = {:.4g} % of the movement", d.rms_over_movement * 100);
   }
   append(out, "\n                  largest {:.4g} mm at s = {:.4f} m", d.max_m * 1e3, d.max_at_m);
-}
-
-void add_angle_and_curvature(std::string& out, const compare::Deviation& d) {
-  append(out, "                  tangent RMS {:.4g} deg, curvature RMS {:.4g} 1/m\n",
-         d.angle_rms_rad * 57.29577951308232, d.curvature_rms_per_m);
-}
-
-void add_state(std::string& out, const compare::ComparedState& state, double length,
-               const char* shape) {
-  append(out, "  state           ");
-  if (!state.searched) {
-    append(out, "{:.6g} J; other equilibria were not searched\n", state.energy_J);
-  } else {
-    const std::string unstable =
-        state.unstable == 0 ? "no unstable one" : fmt::format("{} unstable", state.unstable);
-    append(out, "{}, {:.6g} J; {}\n",
-           state.only_lowest() ? "the only stable one found"
-                               : fmt::format("number {} by energy of {} stable ones found{}",
-                                             state.rank, state.stable,
-                                             state.energy_above_lowest_J() > 0
-                                                 ? fmt::format(" ({:.4g} J above the lowest one)",
-                                                               state.energy_above_lowest_J())
-                                                 : ""),
-           state.energy_J,
-           state.others.empty() ? "no other equilibrium found" : "besides " + unstable);
-  }
-  // Symmetric equilibria have identical lines and are combined.
-  std::vector<std::pair<std::string, int>> lines;
-  for (const compare::OtherState& other : state.others) {
-    if (!other.stable && other.rms_from_shape_m >= state.rms_from_shape_m) continue;
-    std::string line = compare::formatted(
-        "{}, {:+.4g} J, RMS {:.4g} % of l away, {:.4g} % from {}\n",
-        other.stable ? "stable" : "unstable", other.energy_difference_J,
-        other.rms_from_compared_m / length * 100, other.rms_from_shape_m / length * 100, shape);
-    if (lines.empty() || lines.back().first != line) lines.emplace_back(std::move(line), 0);
-    ++lines.back().second;
-  }
-  for (const auto& [line, count] : lines) {
-    append(out, "                  other: {}{}", count > 1 ? fmt::format("{} ", count) : "", line);
-  }
 }
 
 void add_modulus(std::string& out, const compare::EffectiveModulus& modulus, double movement_m,
@@ -106,48 +64,32 @@ void add_modulus(std::string& out, const compare::EffectiveModulus& modulus, dou
 }
 
 std::string comparison_text(const compare::Comparison& c) {
-  std::string out;
-  const compare::Parameters& p = c.force.parameters;
-  append(out, "{}   Gamma = {:.4g}\n", compare::display(c.scene), c.gamma);
-  append(out, "  force model     law {}, bookkeeping {}, N = {}, c_c = {:.6g} N",
-         compare::to_string(c.settings.law), compare::to_string(c.settings.bookkeeping),
-         c.settings.points, p.c_c);
-  if (p.c_b > 0) append(out, ", c_b = {:.6g} N", p.c_b);
-  append(out, "\n");
-  std::vector<std::string> by_force = c.force.neglected;
-  by_force.erase(std::remove(by_force.begin(), by_force.end(), "friction"), by_force.end());
-  if (!by_force.empty()) {
-    append(out, "  neglected       {} that the scene has, by the force model: in all below\n",
-           fmt::join(by_force, ", "));
-  }
-  if (neglects(c, "friction")) {
-    append(out,
-           "  neglected       friction that the scene has, by both models: nothing below has it\n");
-  }
-  if (!c.unverified.empty()) {
-    append(out, "  reference       {}: nothing below is proven\n", c.unverified);
-  }
-  const compare::Deviation& d = c.deviation;
-  add_largest_and_rms(out, d);
-  if (std::isfinite(d.tip_m)) append(out, ", tip {:.4g} mm", d.tip_m * 1e3);
+  std::string out = compare::display(c.scene) + "\n";
+  add_largest_and_rms(out, c.deviation);
   out += "\n";
-  add_angle_and_curvature(out, d);
-  if (std::isfinite(c.undeformed_rms_over_length)) {
-    append(out, "                  (the unbent rod would be {:.4g} % of l off)\n",
-           c.undeformed_rms_over_length * 100);
-  }
-  for (const energy_model::ContactPart& contact : c.contacts) {
-    append(out, "  contact         {}\n", contact_text(contact));
-  }
   if (c.unverified.empty()) {
-    const double movement_m = c.deviation.rms_m / c.deviation.rms_over_movement;
-    add_modulus(out, c.effective_modulus, movement_m, c.stiffness, NAN);
+    add_modulus(out, c.effective_modulus, c.deviation.rms_m / c.deviation.rms_over_movement,
+                c.stiffness, NAN);
+  } else {
+    append(out, "  reference       {}: nothing here is proven\n", c.unverified);
   }
-  add_budget(out, c);
-  add_state(out, c.state, c.length, "force");
-  append(out, "  cost            force {} steps, {:.3g} ms; energy {} evaluations, {:.3g} ms\n\n",
-         c.force.steps, c.force.seconds * 1e3, c.energy_evaluations, c.energy_seconds * 1e3);
-  return out;
+  compare::Document details{.json = comparison_json(c),
+                            .large = {.length = c.length, .energy = std::abs(c.state.energy_J)}};
+  Json& json = details.json;
+  const Json modulus = modulus_json(c.effective_modulus);
+  for (const auto& [key, value] : modulus.items()) json.erase(key);
+  for (const char* key : {"scene", "law", "bookkeeping", "points", "plan", "arc_length_m",
+                          "force_points_m", "energy_points_m", "reference_verified"}) {
+    json.erase(key);
+  }
+  for (const char* key : {"rms_m", "max_m", "max_at_m", "rms_over_length", "rms_over_movement"}) {
+    json["deviation"].erase(key);
+  }
+  if (json.contains("contacts")) count_from_1(json["contacts"]);
+  json.erase("budget");
+  json["error_budget"] = budget_rows(c);
+  json["deviation"]["budget_total_m"] = c.budget.total_m;
+  return out + "\n" + details.text() + "\n";
 }
 
 Json comparison_json(const compare::Comparison& comparison) {
@@ -216,16 +158,6 @@ std::string comparisons_csv(const std::vector<compare::Comparison>& comparisons)
 
 Json comparisons_json(const std::vector<compare::Comparison>& comparisons) {
   return {{"schema", "dlo/compare/1"}, {"cases", json_list(comparisons, comparison_json)}};
-}
-
-std::string range_text(const compare::Alignment& alignment, double length) {
-  double from = alignment.shape.arc_length.front();
-  double to = alignment.shape.arc_length.back();
-  const double near = 1e-4 * length;
-  const bool whole = from <= near && to >= length - near;
-  if (whole) return alignment.reversed ? "from arc length l to 0" : "from arc length 0 to l";
-  if (alignment.reversed) std::swap(from, to);
-  return fmt::format("from s = {:.4g} to {:.4g} m", from, to);
 }
 
 std::string pose_text(const compare::RigidMotion& pose, double length) {

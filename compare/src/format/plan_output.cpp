@@ -3,39 +3,6 @@
 #include "record/csv_table.hpp"
 
 namespace dlo::cli {
-std::string assumption_text(const compare::Scene& scene) {
-  if (!scene.assumes_torsion()) return "";
-  const bool is_rectangle = scene.width > 0 && !scene.given_bending_stiffness;
-  return fmt::format(
-      "torsional stiffness GJ = {} / {:g} = {:.4g} N m^2 (Poisson's ratio {:g}), as "
-      "rod.torsional_stiffness is not given",
-      is_rectangle                  ? "E J / 2"
-      : scene.bending_stiffness_2() ? "2 EI_1 EI_2 / (EI_1 + EI_2)"
-                                    : "EI",
-      1 + compare::assumed_poisson_ratio, scene.twisting_stiffness(),
-      compare::assumed_poisson_ratio);
-}
-
-std::string layers_text(const compare::Scene& scene) {
-  if (!scene.layers) return "";
-  const compare::LayeredSection& section = *scene.layers;
-  return fmt::format(
-      "EI {:.6g} N m^2 bonded, {:.6g} N m^2 free to slip; GJ {:.6g}, {:.6g} N m^2 (Poisson's ratio "
-      "{:g}); taken: {}",
-      section.bonded_bending_stiffness, section.free_bending_stiffness,
-      section.bonded_torsional_stiffness, section.free_torsional_stiffness,
-      compare::assumed_poisson_ratio, section.bonded ? "bonded" : "free");
-}
-
-std::string rest_shape_text(const compare::Scene& scene) {
-  if (!scene.rest_shape) return "";
-  const compare::RestShape& shape = *scene.rest_shape;
-  return fmt::format(
-      "{}: {} points, within {:.2g} m of {} arc{} (RMS {:.2g} m){}", compare::display(shape.file),
-      shape.points, shape.largest_error, shape.arcs.size(), shape.arcs.size() == 1 ? "" : "s",
-      shape.rms_error,
-      shape.largest_angle ? fmt::format(", d1 within {:.2g} rad", *shape.largest_angle) : "");
-}
 
 Json plan_json(const compare::Plan& plan) {
   Json spans = json_list(plan.spans, [&](const compare::PlannedSpan& span) -> Json {

@@ -18,22 +18,9 @@
 
 namespace dlo::cli {
 
-/// Describes the interval of arc length that a shape covers on its reference, in a few words.
-[[nodiscard]] std::string range_text(const compare::Alignment& alignment, double length);
-
 [[nodiscard]] std::string pose_text(const compare::RigidMotion& pose, double length);
 
 [[nodiscard]] Json to_json(const compare::Alignment& alignment);
-
-/// Returns a sentence about what is assumed of a scene's rod; empty if nothing is assumed.
-[[nodiscard]] std::string assumption_text(const compare::Scene& scene);
-
-/// Returns the stiffness bounds of a rod of layers, and which of them is used; empty for another
-/// rod.
-[[nodiscard]] std::string layers_text(const compare::Scene& scene);
-
-/// Returns the residuals of a rest shape's points; empty for a scene without a rest shape.
-[[nodiscard]] std::string rest_shape_text(const compare::Scene& scene);
 
 /// Returns a plan for people, with a blank line after it.
 [[nodiscard]] std::string plan_text(const compare::Plan& plan, const compare::Scene& scene);
@@ -44,11 +31,10 @@ namespace dlo::cli {
 /// norm.
 [[nodiscard]] Eigen::Vector3d shown(const Eigen::Vector3d& vector, double magnitude);
 
-/// Describes a contact with an obstacle for people: interval and force; obstacles count from 1.
-[[nodiscard]] std::string contact_text(const energy_model::ContactPart& contact);
-
 /// Returns all contacts, by arc length; obstacles count from 0.
 [[nodiscard]] Json contacts_json(const std::vector<energy_model::ContactPart>& contacts);
+/// Makes the obstacles of a list of contacts count from 1, as in texts.
+void count_from_1(Json& contacts);
 
 /// Describes a solution for people.
 [[nodiscard]] std::string solution_text(const compare::Solution& solution,
@@ -85,14 +71,8 @@ namespace dlo::cli {
 /// Returns one line per comparison.
 [[nodiscard]] std::string comparisons_csv(const std::vector<compare::Comparison>& comparisons);
 
-/// Adds rows about the distance of a shape from another: RMS, largest and its position; the angles.
+/// Adds the RMS distance of a shape from another, the largest distance and its position.
 void add_largest_and_rms(std::string& out, const compare::Deviation& d);
-void add_angle_and_curvature(std::string& out, const compare::Deviation& d);
-
-/// Adds the compared equilibrium and the others.
-/// @param length  of the rod [m];  @param shape  name of the compared shape in the text
-void add_state(std::string& out, const compare::ComparedState& state, double length,
-               const char* shape);
 
 /// Adds the lines about E*/E.
 /// @param movement_m  RMS displacement of the rod from straight [m], NaN without
@@ -110,6 +90,9 @@ struct CheckPage {
 [[nodiscard]] std::string shape_check_text(const CheckPage& page);
 
 [[nodiscard]] Json shape_check_json(const compare::CheckResult& report);
+
+/// Returns a text as one cell of a Markdown table, with all markup escaped.
+[[nodiscard]] std::string markdown(const std::string& text);
 
 /// Returns a summary in Markdown, such as for a job of continuous integration.
 [[nodiscard]] std::string shape_check_markdown(const compare::CheckResult& report);

@@ -9,6 +9,7 @@
 #include "dlo/compare/error.hpp"
 #include "dlo/compare/force_model_settings.hpp"
 #include "dlo/force_model/bending.hpp"
+#include "format/json.hpp"
 #include "polygon/point_layout.hpp"
 #include "record/field.hpp"
 #include "scene/scene_problem.hpp"
@@ -16,17 +17,7 @@
 namespace dlo::compare {
 namespace {
 
-Json vector_document(const Eigen::Vector3d& vector) {
-  return {vector.x() + 0.0, vector.y() + 0.0, vector.z() + 0.0};  // never -0
-}
-
-Json columns_document(const Eigen::Matrix3Xd& columns) {
-  Json result = Json::array();
-  for (Eigen::Index i = 0; i < columns.cols(); ++i) {
-    result.push_back(vector_document(columns.col(i)));
-  }
-  return result;
-}
+Json vector_json(const Eigen::Vector3d& vector) { return to_json(vector); }
 
 /// Returns null for zero, which represents a quantity that is unknown, or that the rod does not
 /// need.
@@ -65,43 +56,43 @@ Json rod_document(const Scene& scene) {
       curvature.push_back({term.x(), term.y()});
     }
   }
-  return {{"length_m", scene.length},
-          {"diameter_m", known(scene.diameter)},
-          {"inner_diameter_m", known(scene.inner_diameter)},
-          {"width_m", known(scene.width)},
-          {"thickness_m", known(scene.thickness)},
-          {"cross_section_m2", known(scene.cross_section())},
-          {"material", scene.material.name.empty() ? Json() : Json(scene.material.name)},
-          {"youngs_modulus_Pa", known(scene.material.youngs_modulus)},
-          {"density_kg_per_m3", known(scene.material.density)},
-          {"bending_stiffness_Nm2",
-           stiffnesses_document(scene.bending_stiffness(), scene.bending_stiffness_2())},
-          {"torsional_stiffness_Nm2", known(scene.twisting_stiffness())},
-          {"torsional_stiffness_is_assumed", scene.assumes_torsion()},
-          {"assumed_torsional_stiffness_Nm2", scene.assumed_torsional_stiffness()},
-          {"axial_stiffness_N", scene.axial_stiffness()},
-          {"mass_per_length_kg_per_m", scene.mass_per_length()},
-          {"mass_kg", scene.mass()},
-          {"mean_weight_N_per_m", vector_document(scene.weight_per_length())},
-          {"natural_curvature_per_m", std::move(curvature)},
-          {"natural_twist_rad_per_m", scene.natural_strain.z()},
-          {"layers", layers_document(scene)},
-          {"rest_shape", rest_shape_document(scene)},
-          {"first_frame",
-           scene.has_material_directors() ? columns_document(scene.first_frame()) : Json()},
-          {"sections", sections_document(scene)}};
+  return {
+      {"length_m", scene.length},
+      {"diameter_m", known(scene.diameter)},
+      {"inner_diameter_m", known(scene.inner_diameter)},
+      {"width_m", known(scene.width)},
+      {"thickness_m", known(scene.thickness)},
+      {"cross_section_m2", known(scene.cross_section())},
+      {"material", scene.material.name.empty() ? Json() : Json(scene.material.name)},
+      {"youngs_modulus_Pa", known(scene.material.youngs_modulus)},
+      {"density_kg_per_m3", known(scene.material.density)},
+      {"bending_stiffness_Nm2",
+       stiffnesses_document(scene.bending_stiffness(), scene.bending_stiffness_2())},
+      {"torsional_stiffness_Nm2", known(scene.twisting_stiffness())},
+      {"torsional_stiffness_is_assumed", scene.assumes_torsion()},
+      {"assumed_torsional_stiffness_Nm2", scene.assumed_torsional_stiffness()},
+      {"axial_stiffness_N", scene.axial_stiffness()},
+      {"mass_per_length_kg_per_m", scene.mass_per_length()},
+      {"mass_kg", scene.mass()},
+      {"mean_weight_N_per_m", to_json(scene.weight_per_length())},
+      {"natural_curvature_per_m", std::move(curvature)},
+      {"natural_twist_rad_per_m", scene.natural_strain.z()},
+      {"layers", layers_document(scene)},
+      {"rest_shape", rest_shape_document(scene)},
+      {"first_frame", scene.has_material_directors() ? points_json(scene.first_frame()) : Json()},
+      {"sections", sections_document(scene)}};
 }
 
 Json gripper_document(const Gripper& gripper) {
   Json frame;
   if (gripper.frame) {
     const std::optional<Eigen::Vector3d>& d1 = gripper.frame->d1;
-    frame = {{"d1", d1 ? vector_document(*d1) : Json()}, {"roll_rad", gripper.frame->roll}};
+    frame = {{"d1", json_or_null(d1, vector_json)}, {"roll_rad", gripper.frame->roll}};
   }
   return {{"at_m", gripper.at},
-          {"position_m", vector_document(gripper.position)},
+          {"position_m", to_json(gripper.position)},
           {"hold", gripper.direction ? "clamp" : "pin"},
-          {"direction", gripper.direction ? vector_document(*gripper.direction) : Json()},
+          {"direction", json_or_null(gripper.direction, vector_json)},
           {"frame", std::move(frame)}};
 }
 
@@ -109,18 +100,18 @@ Json gripper_document(const Gripper& gripper) {
 Json body_document(const obstacle::Body& body) {
   if (body.is_half_space()) {
     return {{"shape", "plane"},
-            {"point_m", vector_document(body.centre() + body.radius() * body.normal())},
-            {"normal", vector_document(body.normal())}};
+            {"point_m", to_json(body.centre() + body.radius() * body.normal())},
+            {"normal", to_json(body.normal())}};
   }
   const Eigen::Vector3d size = body.upper() - body.lower();
   Json result = {
-      {"shape", "box"}, {"point_m", vector_document(body.centre())}, {"radius_m", body.radius()}};
+      {"shape", "box"}, {"point_m", to_json(body.centre())}, {"radius_m", body.radius()}};
   Eigen::Index longest = 0;
   const double length = size.maxCoeff(&longest);
   if (size.sum() > length) {
-    result["axes"] = columns_document(body.axes());
+    result["axes"] = points_json(body.axes());
     const double round = 2 * body.radius();
-    result["size_m"] = vector_document(size + Eigen::Vector3d::Constant(round));
+    result["size_m"] = to_json(size + Eigen::Vector3d::Constant(round));
     return result;
   }
   if (length == 0) {
@@ -128,7 +119,7 @@ Json body_document(const obstacle::Body& body) {
     return result;
   }
   result["shape"] = std::isfinite(length) ? "capsule" : "cylinder";
-  result["axis"] = vector_document(body.axes().col(longest));
+  result["axis"] = to_json(body.axes().col(longest));
   if (std::isfinite(length)) result["length_m"] = length;
   return result;
 }
@@ -169,18 +160,15 @@ void add_polygon(const Scene& scene, const ForceModelSettings& settings, Json& r
   result["l_s_m"] = chosen ? Json() : Json(steps.l_s);
   result["point_at_m"] = polygon.arc_length;
   result["point_mass_kg"] = point_masses(scene, settings).rod;
-  result["point_force_N"] = columns_document(rod.loads);
+  result["point_force_N"] = points_json(rod.loads);
   result["segment_m"] = std::vector<double>(rod.rest_lengths.begin(), rod.rest_lengths.end());
   result["joint_stiffness_Nm"] = joints_document(rod);
   const Eigen::VectorXd& turns = rod.bending.natural_turns;
   result["joint_turn_at_rest_rad"] = std::vector<double>(turns.begin(), turns.end());
-  Json held = Json::array();
-  for (const force_model::Grip& grip : rod.grips) {
-    held.push_back(
-        {{"first_point", grip.first_point}, {"points_m", columns_document(grip.targets)}});
-  }
-  result["held"] = std::move(held);
-  result["start_m"] = columns_document(polygon.starts.front());
+  result["held"] = json_list(rod.grips, [](const force_model::Grip& grip) -> Json {
+    return {{"first_point", grip.first_point}, {"points_m", points_json(grip.targets)}};
+  });
+  result["start_m"] = points_json(polygon.starts.front());
 }
 
 Json force_model_document(const Scene& scene) {
@@ -220,47 +208,40 @@ nlohmann::ordered_json rest_shape_document(const Scene& scene) {
           {"arcs", shape.arcs.size()},
           {"largest_error_m", shape.largest_error},
           {"rms_error_m", shape.rms_error},
-          {"largest_angle_rad", shape.largest_angle ? Json(*shape.largest_angle) : Json()},
-          {"begin_m", vector_document(shape.begin)},
-          {"first_frame", columns_document(shape.first_frame)}};
+          {"largest_angle_rad", json_or_null(shape.largest_angle)},
+          {"begin_m", to_json(shape.begin)},
+          {"first_frame", points_json(shape.first_frame)}};
 }
 
 nlohmann::ordered_json scene_document(const Scene& scene) {
-  Json grippers = Json::array();
-  for (const Gripper& gripper : scene.grippers) grippers.push_back(gripper_document(gripper));
   Json loads = Json::array();
   for (const PointLoad& load : scene.loads) {
     loads.push_back({{"at_m", load.at},
-                     {"force_N", vector_document(load.force)},
-                     {"torque_Nm", load.torque.isZero(0) ? Json() : vector_document(load.torque)}});
+                     {"force_N", to_json(load.force)},
+                     {"torque_Nm", load.torque.isZero(0) ? Json() : to_json(load.torque)}});
     if (load.follows) loads.back()["follows"] = true;
   }
   Json distributed = Json::array();
   for (const DistributedLoad& load : scene.distributed_loads) {
-    Json forces = Json::array();
-    for (const Eigen::Vector3d& q : load.force_per_length) forces.push_back(vector_document(q));
     distributed.push_back(
-        {{"from_m", load.from}, {"to_m", load.to}, {"force_per_length_N_per_m", forces}});
+        {{"from_m", load.from},
+         {"to_m", load.to},
+         {"force_per_length_N_per_m", json_list(load.force_per_length, vector_json)}});
   }
-  Json obstacles = Json::array();
-  for (const Obstacle& obstacle : scene.obstacles) {
-    obstacles.push_back(obstacle_document(obstacle));
-  }
-  const std::optional<Eigen::Vector3d> normal = scene.plane_normal();
   Json document = {{"schema", "dlo/scene/1"},
                    {"scene", scene.name},
                    {"file", scene.file},
-                   {"gravity_m_per_s2", vector_document(scene.gravity)},
+                   {"gravity_m_per_s2", to_json(scene.gravity)},
                    {"gamma", scene.gamma()},
-                   {"plane_normal", normal ? vector_document(*normal) : Json()},
+                   {"plane_normal", json_or_null(scene.plane_normal(), vector_json)},
                    {"rod", rod_document(scene)},
-                   {"grippers", std::move(grippers)},
+                   {"grippers", json_list(scene.grippers, gripper_document)},
                    {"loads", std::move(loads)},
                    {"distributed_loads", std::move(distributed)},
-                   {"obstacles", std::move(obstacles)},
+                   {"obstacles", json_list(scene.obstacles, obstacle_document)},
                    {"force_model", force_model_document(scene)}};
   if (scene.drag) {
-    document["drag"] = {{"velocity_m_per_s", vector_document(scene.drag->velocity)},
+    document["drag"] = {{"velocity_m_per_s", to_json(scene.drag->velocity)},
                         {"normal_kg_per_m2", scene.drag->normal},
                         {"tangential_kg_per_m2", scene.drag->tangential}};
   }
@@ -268,7 +249,7 @@ nlohmann::ordered_json scene_document(const Scene& scene) {
 }
 
 std::string scene_document_text(const Scene& scene) {
-  return scene_document(scene).dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
+  return cli::json_text(scene_document(scene));
 }
 
 }  // namespace dlo::compare

@@ -14,9 +14,8 @@ namespace dlo::compare {
 [[nodiscard]] nlohmann::ordered_json scene_document(const Scene& scene);
 
 /// Returns the part of the document about the rod's layers; null without layers.
-/// without.
 [[nodiscard]] nlohmann::ordered_json layers_document(const Scene& scene);
-/// Points of the rest shape; null without.
+/// Returns the part about the points of the rest shape; null without a rest shape.
 [[nodiscard]] nlohmann::ordered_json rest_shape_document(const Scene& scene);
 
 /// Returns that document as text: invalid UTF-8 in a name becomes U+FFFD.

@@ -24,16 +24,6 @@ Json model_json(const compare::Scene& scene) {
           {"notes", scene.model->notes}};
 }
 
-/// Returns a text as one cell of a Markdown table, with all markup escaped.
-std::string markdown(const std::string& text) {
-  std::string out;
-  for (const char c : compare::display(text)) {
-    if (std::string_view("\\`*_[]<>|#&").find(c) != std::string_view::npos) out += '\\';
-    out += c;
-  }
-  return out;
-}
-
 void add_explanations(std::string& out, const compare::CheckResult& report) {
   constexpr std::size_t most_explanations = 3;
   for (std::size_t i = 0; i < std::min(most_explanations, report.explanations.size()); ++i) {
@@ -46,6 +36,15 @@ void add_explanations(std::string& out, const compare::CheckResult& report) {
 }
 
 }  // namespace
+
+std::string markdown(const std::string& text) {
+  std::string out;
+  for (const char c : compare::display(text)) {
+    if (std::string_view("\\`*_[]<>|#&").find(c) != std::string_view::npos) out += '\\';
+    out += c;
+  }
+  return out;
+}
 
 Json shape_check_json(const compare::CheckResult& report) {
   const compare::ShapeCheck& c = report.check;

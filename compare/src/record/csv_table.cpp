@@ -70,13 +70,17 @@ KeyName name_of_key(std::string_view key) {
   return {words, unit_text(key.substr(std::min(name.size() + 1, key.size())))};
 }
 
-std::string value_text(const Json& value, const KeyName& key, const Magnitudes& large) {
+/// @param scale  magnitude of such values, of which small fractions are rounding (shown())
+std::string value_text(const Json& value, const KeyName& key, double scale) {
   if (value.is_string()) return display(value.get<std::string>());
   if (value.is_boolean()) return value.get<bool>() ? "yes" : "no";
   if (value.is_array()) {
     std::string list;
     for (const Json& one : value) {
-      const std::string text = value_text(one, key, large);
+      if (one.is_number_float()) scale = std::max(scale, std::abs(one.get<double>()));
+    }
+    for (const Json& one : value) {
+      const std::string text = value_text(one, key, scale);
       append(list, "{}{}", list.empty() ? "" : ", ", text.empty() ? "-" : text);
     }
     return "[" + list + "]";
@@ -84,11 +88,13 @@ std::string value_text(const Json& value, const KeyName& key, const Magnitudes& 
   if (!value.is_number_float()) return value.is_null() ? "" : value.dump();
   const auto number = value.get<double>();
   if (!std::isfinite(number)) return "";
-  const double value_shown = key.factor * shown(number, key.factor > 1 ? 1 : large.of(key.unit));
-  // A share such as c_h that is not quite 1 is not printed as 1.
+  const double value_shown = key.factor * shown(number, key.factor > 1 ? 1 : scale);
+  // A share such as c_h that is not quite 1 is not printed as 1, and 30000 not as 3e+04.
   constexpr double nearly_one = 0.9995;
-  return value_shown > nearly_one && value_shown < 1 ? formatted("{:.9g}", value_shown)
-                                                     : formatted("{:.4g}", value_shown);
+  constexpr double most_digits = 1e9;
+  const bool counts = std::trunc(value_shown) == value_shown && std::abs(value_shown) < most_digits;
+  const bool exact = counts || (value_shown > nearly_one && value_shown < 1);
+  return formatted("{:.{}g}", value_shown, exact ? 9 : 4);
 }
 
 /// Whether a value has a text of one line: it contains no object, and no long list.
@@ -143,7 +149,7 @@ void add_values(std::string& out, const Json& object, const std::string& indent,
     const bool lines = value.is_array() && !value.empty() && value.front().is_string();
     if (!lines && !fits_in_a_line(value)) continue;
     for (const Json& line : lines ? value : Json::array({value})) {
-      const std::string text = value_text(line, name, large);
+      const std::string text = value_text(line, name, large.of(name.unit));
       if (text.empty()) continue;
       append(out, "{}{:<{}}  {}{}{}\n", indent, name.words, width, text,
              name.unit.empty() ? "" : " ", name.unit);
@@ -228,7 +234,7 @@ std::string CsvTable::aligned(const Json& documents, const Magnitudes& large) co
     bool empty = true;
     for (std::size_t i = 0; i < documents.size(); ++i) {
       const Json value = cell(column, documents[i], i + 1);
-      std::string text = value_text(value, name, large);
+      std::string text = value_text(value, name, large.of(name.unit));
       numbers = numbers && (value.is_number() || text.empty());
       empty = empty && text.empty();
       cells.push_back(text.empty() ? "-" : std::move(text));

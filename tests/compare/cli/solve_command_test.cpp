@@ -138,7 +138,7 @@ TEST_F(Command, SolveReturnsAnEquilibriumByItsNumberInTheListOfAll) {
   const double pin = second.at("grippers")[0].at("force_N")[1];
   const double peg = second.at("contacts")[0].at("force_N")[1];
   EXPECT_NEAR(pin + peg, 9.81 * (1.5 + 0.06), 1e-6);
-  EXPECT_TRUE(says(run("solve " + path + " --equilibrium 2").out, {"obstacle 1: force"}));
+  EXPECT_TRUE(says(run("solve " + path + " --equilibrium 2").out, {"\nobstacles\n  obstacle  force [N]\n         1  ["}));
   const std::string beyond = std::to_string(all.size() + 1);
   EXPECT_TRUE(says(run("solve " + path + " --equilibrium " + beyond).err,
                    {"equilibrium " + beyond + ": the search found"}));
@@ -148,8 +148,7 @@ TEST_F(Command, SolveReturnsAnEquilibriumByItsNumberInTheListOfAll) {
 
 TEST_F(Command, SolveStatesTheStableEquilibriaThatItsSearchFound) {
   const std::string path = scene(dlo::test::rope_beside_peg);
-  EXPECT_TRUE(says(run("solve " + path).out, {"\nsearch     1 stable equilibrium found: ",
-                                              "2 starts passed obstacles on another side"}));
+  EXPECT_TRUE(says(run("solve " + path).out, {"\nstable energies ", "\npassing starts "}));
   const json lowest = json_of("solve " + path);
   EXPECT_EQ(lowest.at("passing_starts"), 2);
   EXPECT_EQ(lowest.at("stable_energies_J"), json::array({lowest.at("energy_J").at("total")}));

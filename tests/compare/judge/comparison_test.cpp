@@ -15,7 +15,6 @@
 #include "dlo/compare/scene_file.hpp"
 #include "dlo/compare/solution.hpp"
 #include "dlo/compare/solve.hpp"
-#include "format/result_output.hpp"
 #include "judge/budget_shares.hpp"
 #include "scenes.hpp"
 
@@ -260,30 +259,6 @@ points = 160
   EXPECT_NEAR(table + energy.grippers[0].force.y() + energy.grippers[1].force.y(), weight,
               1e-3 * weight);
   EXPECT_NEAR(solve(scene, Model::chain).obstacles[0].y(), table, 0.02 * weight);
-}
-
-TEST(ComparedStates, OthersAreTheStableOnesAndWhatIsNearerToTheShape) {
-  const OtherState mirrored{.stable = true,
-                            .energy_difference_J = 0.5,
-                            .rms_from_compared_m = 0.02,
-                            .rms_from_shape_m = 0.03};
-  const OtherState nearer{
-      .energy_difference_J = 0.25, .rms_from_compared_m = 0.04, .rms_from_shape_m = 0.009};
-  const OtherState farther{
-      .energy_difference_J = 0.75, .rms_from_compared_m = 0.08, .rms_from_shape_m = 0.1};
-  std::string text;
-  cli::add_state(text,
-                 {.energy_J = 1,
-                  .rms_from_shape_m = 0.01,
-                  .stable = 3,
-                  .unstable = 2,
-                  .others = {mirrored, mirrored, nearer, farther}},
-                 2, "the shape");
-  EXPECT_EQ(
-      text,
-      "  state           number 1 by energy of 3 stable ones found, 1 J; besides 2 unstable\n"
-      "                  other: 2 stable, +0.5 J, RMS 1 % of l away, 1.5 % from the shape\n"
-      "                  other: unstable, +0.25 J, RMS 2 % of l away, 0.45 % from the shape\n");
 }
 
 TEST(Solve, WhatDoesNotConvergeIsAnError) {

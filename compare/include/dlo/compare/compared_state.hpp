@@ -35,8 +35,6 @@ struct ComparedState {
     }
     return above > rounding * std::abs(energy_J) ? above : 0;
   }
-  /// Whether the compared equilibrium is the only known stable one; a mirror image is a second one.
-  [[nodiscard]] bool only_lowest() const { return rank == 1 && stable == 1; }
 };
 
 }  // namespace dlo::compare
