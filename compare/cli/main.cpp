@@ -9,7 +9,6 @@
 
 #include "base/output_file.hpp"
 #include "base/temporary_path.hpp"
-#include "option/exit_status.hpp"
 #include "option/output.hpp"
 #include "run_command.hpp"
 

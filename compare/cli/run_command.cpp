@@ -27,9 +27,8 @@
 #include "command/commands.hpp"
 #include "dlo/compare/error.hpp"
 #include "dlo/energy_model/interrupt.hpp"
+#include "option/command_line.hpp"
 #include "option/effect.hpp"
-#include "option/help.hpp"
-#include "option/option_values.hpp"
 #include "option/output.hpp"
 
 namespace dlo::cli {
@@ -107,12 +106,7 @@ void build(CLI::App& app, std::optional<CommandTimeLimit>& limit) {
   app.formatter(help_formatter());
   app.set_help_flag("-h,--help", "this help; with a command, its options");
   app.set_version_flag("--version", "dlo " DLO_VERSION, "the version");
-  for (const Task& task : tasks()) {
-    for (const auto add : task.commands) {
-      add(app);
-      app.get_subcommands({}).back()->group(task.what);
-    }
-  }
+  for (const auto add : all_commands) add(app);
   app.footer(
       "Begin with:\n"
       "  dlo init cable.toml --length \"2 m\" --diameter \"6 mm\" --material silicone\n"
@@ -141,7 +135,6 @@ int run_command(std::vector<std::string> words) {
       "dlo");
   std::optional<CommandTimeLimit> limit;
   build(app, limit);
-  refuse_empty_values(app);
   if (words.empty()) {
     write_standard_output(app.help());
     return static_cast<int>(ExitStatus::good);

@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "option/exit_status.hpp"
+#include "option/output.hpp"
 
 namespace dlo::cli {
 

@@ -3,8 +3,7 @@
 #include "command/commands.hpp"
 #include "dlo/compare/scene_file.hpp"
 #include "dlo/compare/solution.hpp"
-#include "option/exit_status.hpp"
-#include "option/option_values.hpp"
+#include "option/command_line.hpp"
 #include "option/output.hpp"
 #include "option/plot.hpp"
 #include "option/scene_options.hpp"
@@ -55,27 +54,11 @@ void run(const BenchOptions& options) {
 }  // namespace
 
 void add_bench(CLI::App& app) {
-  CLI::App* command = app.add_subcommand("bench", "speed against error of all models");
-  const auto options = std::make_shared<BenchOptions>();
-  command->add_option("SCENE", options->scenes,
-                      "scene files (TOML); none: a steel rod and one a hundred times softer");
-  add_checked(*command, "--seconds", options->benchmark.budget_s, number_between(0.1, 86400),
-              "time for all runs together");
-  add_checked(*command, "--repeats", options->benchmark.repeats, CLI::Range(1, 1000),
-              "runs that a median is taken of");
-  add_checked(*command, "--speed", options->benchmark.gripper_speed, number_between(1e-9, 1e3),
-              "of the moving gripper [m/s]");
-  add_program_options(*command, options->programs);
-  add_checked(*command, "--time-limit", options->benchmark.program_time_limit,
-              number_between(1e-3, 1e9), "of each run of a program [s]");
-  add_output_options(*command, options->output);
-  options->plot.add_to(*command, "error against time, with the front,");
-  command->footer(
-      "Examples:\n"
-      "  dlo bench data/scenes/spring_steel_175.toml --seconds 2 --plot front.svg\n"
-      "  dlo bench data/scenes/cable.toml --seconds 2 --with mine='dlo solve "
-      "data/scenes/cable.toml --model chain --points {points} --format csv -o {shape}'");
-  command->callback([options] { run(*options); });
+  add_command<BenchOptions>(app, "bench", run, [](Command& command, BenchOptions& o) {
+    command.bind("SCENE", o.scenes, "--seconds", o.benchmark.budget_s, "--repeats",
+                 o.benchmark.repeats, "--speed", o.benchmark.gripper_speed, "--with", o.programs,
+                 "--time-limit", o.benchmark.program_time_limit, o.output, o.plot);
+  });
 }
 
 }  // namespace dlo::cli

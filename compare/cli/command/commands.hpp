@@ -1,7 +1,6 @@
 #pragma once
 
 #include <CLI/CLI.hpp>
-#include <vector>
 
 namespace dlo::cli {
 
@@ -24,13 +23,10 @@ void add_modes(CLI::App& app);
 void add_suite(CLI::App& app);
 void add_track(CLI::App& app);
 
-/// Commands for one kind of task.
-struct Task {
-  const char* what;
-  std::vector<void (*)(CLI::App&)> commands;
-};
-
-/// Returns all commands, in the order of the help.
-[[nodiscard]] const std::vector<Task>& tasks();
+/// All commands, in the order of the help.
+inline constexpr void (*all_commands[])(CLI::App&) = {
+    add_init,      add_materials, add_solve,   add_scene, add_check,
+    add_suite,     add_calibrate, add_compare, add_paper, add_bench,
+    add_stability, add_track,     add_modes,   add_sweep, add_regress};
 
 }  // namespace dlo::cli

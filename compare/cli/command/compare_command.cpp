@@ -8,7 +8,7 @@
 #include "dlo/compare/solution.hpp"
 #include "format/json.hpp"
 #include "format/result_output.hpp"
-#include "option/option_values.hpp"
+#include "option/command_line.hpp"
 #include "option/output.hpp"
 #include "option/plot.hpp"
 #include "option/scene_options.hpp"
@@ -68,15 +68,15 @@ void run(const CompareOptions& options) {
   std::string unverified;
   compare::SolveOptions solve = options.overrides.solve();
   solve.accept_unverified = true;
-  const bool explain = options.plan.explain() && options.output.is(Format::text);
-  const bool shows_plan = explain || options.output.is(Format::json);
+  const bool explain = options.plan.explain() && options.output.format == "text";
+  const bool shows_plan = explain || options.output.format == "json";
   const auto plan = shows_plan ? std::optional(options.plan.plan()) : std::nullopt;
   {
     ProgressBar bar("compare");
     for (const std::string& path : options.scenes) {
       const compare::Scene& scene = scenes.emplace_back(options.overrides.load(path));
       say_assumptions(scene);
-      if (options.output.is(Format::csv)) warn_of_polygons(scene);
+      if (options.output.format == "csv") warn_of_polygons(scene);
       comparisons.push_back(compare::compare(
           scene, solve, plan,
           options.no_modulus ? compare::ModulusSearch::no : compare::ModulusSearch::yes));
@@ -90,16 +90,17 @@ void run(const CompareOptions& options) {
                static_cast<std::int64_t>(options.scenes.size()));
     }
   }
-  write_output(options.output, {.text =
-                                    [&] {
-                                      std::string text = plans;
-                                      for (const compare::Comparison& comparison : comparisons) {
-                                        text += comparison_text(comparison);
-                                      }
-                                      return text;
-                                    },
-                                .json = [&] { return json_text(comparisons_json(comparisons)); },
-                                .csv = [&] { return comparisons_csv(comparisons); }});
+  write_output(options.output,
+               Formats{{"text",
+                        [&] {
+                          std::string text = plans;
+                          for (const compare::Comparison& comparison : comparisons) {
+                            text += comparison_text(comparison);
+                          }
+                          return text;
+                        }},
+                       {"json", [&] { return json_text(comparisons_json(comparisons)); }},
+                       {"csv", [&] { return comparisons_csv(comparisons); }}});
   options.plot.draw([&] { return comparison_picture(scenes, comparisons); });
   write_page(options.report, scenes, comparisons);
   if (!unverified.empty()) throw compare::ConvergenceError(unverified);
@@ -108,21 +109,10 @@ void run(const CompareOptions& options) {
 }  // namespace
 
 void add_compare(CLI::App& app) {
-  CLI::App* command =
-      app.add_subcommand("compare", "how far the force model is from the energy model, and why");
-  const auto options = std::make_shared<CompareOptions>();
-  command->add_option("SCENE", options->scenes, "scene files (TOML)")->required();
-  command->add_flag("--no-modulus", options->no_modulus, "leave E*/E out");
-  options->overrides.add_to(*command);
-  options->plan.add_to(*command);
-  add_output_options(*command, options->output);
-  options->plot.add_to(*command, "both shapes, curvature, deviation along the rod and its budget");
-  add_file(*command, "--report", options->report,
-           "write a page, FILE.html: verdict, pictures, numbers and error budget of each scene");
-  command->footer(
-      "Examples:\n  dlo compare data/scenes/spring_steel_175.toml --law hooke --bookkeeping "
-      "consistent\n  dlo compare data/scenes/spring_steel_175.toml --plot both.svg");
-  command->callback([options] { run(*options); });
+  add_command<CompareOptions>(app, "compare", run, [](Command& command, CompareOptions& o) {
+    command.bind("SCENE", o.scenes, "--no-modulus", o.no_modulus, o.overrides, o.plan, o.output,
+                 o.plot, "--report", o.report);
+  });
 }
 
 }  // namespace dlo::cli

@@ -1,6 +1,7 @@
 #include <memory>
 
 #include "command/commands.hpp"
+#include "option/command_line.hpp"
 #include "option/output.hpp"
 #include "option/scene_options.hpp"
 #include "option/terminal.hpp"
@@ -26,12 +27,8 @@ void run(const OutputOptions& options) {
 }  // namespace
 
 void add_paper(CLI::App& app) {
-  CLI::App* command =
-      app.add_subcommand("paper", "the paper's own comparison: its tables, its rod, its E/3");
-  const auto options = std::make_shared<OutputOptions>();
-  add_output_options(*command, *options);
-  command->footer("Example:\n  dlo paper --format json -o paper.json");
-  command->callback([options] { run(*options); });
+  add_command<OutputOptions>(app, "paper", run,
+                             [](Command& command, OutputOptions& o) { command.bind(o); });
 }
 
 }  // namespace dlo::cli

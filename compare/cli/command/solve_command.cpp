@@ -10,7 +10,7 @@
 #include "dlo/compare/solve.hpp"
 #include "format/json.hpp"
 #include "format/result_output.hpp"
-#include "option/option_values.hpp"
+#include "option/command_line.hpp"
 #include "option/output.hpp"
 #include "option/plot.hpp"
 #include "option/scene_options.hpp"
@@ -23,7 +23,7 @@ namespace {
 
 struct SolveOptions {
   std::string scene;
-  std::string model;  // empty: reference_model()
+  std::optional<compare::Model> model = {};  // none: reference_model()
   int samples = 0;
   bool all = false;
   int equilibrium = 0;  // number in the list of --all; 0: the equilibrium of the model
@@ -37,7 +37,7 @@ struct SolveOptions {
 /// Reports properties that the model neglects, for formats that do not contain them.
 void warn_of_neglected(const SolveOptions& options, const compare::Solution& solution,
                        const compare::Scene& scene) {
-  if (options.output.is(Format::text) || options.output.is(Format::json)) return;
+  if (options.output.format == "text" || options.output.format == "json") return;
   for (const std::string& what : solution.neglected) {
     say("{}: model {} neglects the {} that the scene has", scene.file,
         compare::to_string(solution.model), what);
@@ -103,13 +103,11 @@ void run(const SolveOptions& options) {
   options.plot.require_drawable();
   const compare::Scene scene = options.overrides.load(options.scene);
   say_assumptions(scene);
-  const compare::Model model = options.model.empty()
-                                   ? compare::reference_model(scene)
-                                   : compare::from_name<compare::Model>(options.model);
+  const compare::Model model = options.model ? *options.model : compare::reference_model(scene);
   constexpr int text_samples = 11;
   int samples = options.samples;
   const bool continuous = model == compare::Model::energy || model == compare::Model::exact;
-  if (samples == 0 && continuous && options.output.is(Format::text)) samples = text_samples;
+  if (samples == 0 && continuous && options.output.format == "text") samples = text_samples;
   const std::vector<double> arc_lengths =
       samples > 0 ? compare::equal_arc_lengths(scene.length, samples) : std::vector<double>{};
   if (options.all) require_model_of_all("--all", model, scene);
@@ -128,33 +126,31 @@ void run(const SolveOptions& options) {
   }
   const compare::Solution& solution = all.solutions.front();
   warn_of_neglected(options, solution, scene);
-  if (options.output.format == "vtk") {
-    write_output(options.output, compare::vtk_polyline(solution.shape,
-                                                       {.curvature = solution.curvature,
-                                                        .tension = solution.tension,
-                                                        .d1 = solution.d1},
-                                                       scene.name));
-    plot(options, solve, scene, all.solutions);
-    return require_verified(solution, scene);
-  }
   const auto plan = [&] {
     compare::PlanOptions plan_options = options.plan.plan();
     plan_options.time_limit = std::min(plan_options.time_limit, solve.time_limit);
     return compare::make_plan(scene, plan_options);
   };
   write_output(options.output,
-               {.text =
-                    [&] {
-                      return (options.plan.explain() ? plan_text(plan(), scene) : "") +
-                             solution_text(solution, scene) +
-                             (options.all ? equilibria_text(all, scene) : "");
-                    },
-                .json =
-                    [&] {
-                      return json_text(options.all ? equilibria_json(all, scene, plan())
-                                                   : solution_json(solution, scene, plan()));
-                    },
-                .csv = [&] { return solution_csv(solution); }});
+               Formats{{"text",
+                        [&] {
+                          return (options.plan.explain() ? plan_text(plan(), scene) : "") +
+                                 solution_text(solution, scene) +
+                                 (options.all ? equilibria_text(all, scene) : "");
+                        }},
+                       {"json",
+                        [&] {
+                          return json_text(options.all ? equilibria_json(all, scene, plan())
+                                                       : solution_json(solution, scene, plan()));
+                        }},
+                       {"csv", [&] { return solution_csv(solution); }},
+                       {"vtk", [&] {
+                          return compare::vtk_polyline(solution.shape,
+                                                       {.curvature = solution.curvature,
+                                                        .tension = solution.tension,
+                                                        .d1 = solution.d1},
+                                                       scene.name);
+                        }}});
   plot(options, solve, scene, all.solutions);
   require_verified(solution, scene);
 }
@@ -162,40 +158,11 @@ void run(const SolveOptions& options) {
 }  // namespace
 
 void add_solve(CLI::App& app) {
-  CLI::App* command = app.add_subcommand("solve", "the shape of one scene with one model");
-  const auto options = std::make_shared<SolveOptions>();
-  command->add_option("SCENE", options->scene, "scene file (TOML)")->required();
-  command->add_option("--model", options->model, compare::meanings<compare::Model>())
-      ->check(CLI::IsMember(compare::names<compare::Model>()))
-      ->default_str("energy, or exact if stretch = true");
-  command->add_option("--samples", options->samples, "M points at equal arc lengths from 0 to l")
-      ->check(CLI::Range(2, 1000000));
-  CLI::Option* all = command->add_flag("--all", options->all,
-                                       "every equilibrium that is found, with its stability");
-  CLI::Option* number =
-      command
-          ->add_option("--equilibrium", options->equilibrium,
-                       "the N-th equilibrium that --all lists, with its forces and contacts")
-          ->type_name("N")
-          ->check(CLI::Range(1, 1000))
-          ->excludes(all);
-  add_file(*command, "--near", options->near,
-           "the equilibrium that a local search from the points of FILE leads to, in place of the "
-           "lowest: a shape in metres, as check --shape reads it")
-      ->excludes(all)
-      ->excludes(number);
-  options->overrides.add_to(*command);
-  options->plan.add_to(*command);
-  std::vector<std::string> formats = compare::names<Format>();
-  formats.emplace_back("vtk");
-  add_output_options(*command, options->output, formats);
-  options->plot.add_to(*command, "shape and curvature (with --all: of every equilibrium)");
-  command->footer(
-      "Examples:\n"
-      "  dlo solve data/scenes/spring_steel_175.toml --model exact --samples 5\n"
-      "  dlo solve data/scenes/cable.toml --format vtk -o cable.vtk   # for ParaView\n"
-      "  dlo solve data/scenes/cable.toml --plot cable.svg");
-  command->callback([options] { run(*options); });
+  add_command<SolveOptions>(app, "solve", run, [](Command& command, SolveOptions& o) {
+    command.bind("SCENE", o.scene, "--model", o.model, "--samples", o.samples, "--all", o.all,
+                 "--equilibrium", o.equilibrium, "--near", o.near, o.overrides, o.plan, o.output,
+                 o.plot);
+  });
 }
 
 }  // namespace dlo::cli

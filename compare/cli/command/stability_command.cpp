@@ -7,8 +7,7 @@
 #include "dlo/compare/error.hpp"
 #include "dlo/compare/force_model_settings.hpp"
 #include "dlo/compare/scene_file.hpp"
-#include "option/exit_status.hpp"
-#include "option/option_values.hpp"
+#include "option/command_line.hpp"
 #include "option/output.hpp"
 #include "option/plot.hpp"
 #include "option/scene_options.hpp"
@@ -44,7 +43,7 @@ bool fails(const StabilityResult& result) {
   return may_not && result.outcome != Outcome::pass && result.outcome != Outcome::refused;
 }
 
-void run_map(StabilityOptions& options) {
+void run_map(StabilityOptions options) {
   options.plot.require_drawable();
   options.grid.axis = options.map == "cF-cc" ? compare::MapAxis::c_c : compare::MapAxis::c_h;
   options.grid.threads = options.threads;
@@ -60,7 +59,7 @@ void run_map(StabilityOptions& options) {
   options.plot.draw([&] { return compare::Picture{{{{compare::map_figure(map)}}}}; });
 }
 
-void run_cases(StabilityOptions& options) {
+void run_cases(StabilityOptions options) {
   if (!options.steppers.empty()) {
     options.cases.steppers.clear();
     for (const std::string& name : options.steppers) {
@@ -78,55 +77,21 @@ void run_cases(StabilityOptions& options) {
   }
 }
 
-constexpr long most_steps = 1000000000000;
-
-void add_case_options(CLI::App& command, StabilityOptions& options) {
-  const OptionGroup group(command, "Hard cases");
-  command.add_option("--case", options.cases.name_contains, "only cases whose name contains this");
-  command.add_option("--stepper", options.steppers, "only these steppers")
-      ->check(CLI::IsMember(compare::names<compare::Stepper>()));
-  const auto add_steps = [&](const char* name, long& value, const char* words) {
-    add_checked(command, name, value, CLI::Range(1L, most_steps), words);
-  };
-  add_steps("--max-steps", options.cases.max_steps, "of the paper's steppers and verlet");
-  add_steps("--max-steps-auto", options.cases.max_steps_auto, "of steppers auto and implicit");
-  add_steps("--steps-at-rest", options.cases.steps_at_rest,
-            "of the case at rest; implicit: a hundredth");
-}
-
-void add_map_options(CLI::App& command, StabilityOptions& options) {
-  const OptionGroup group(command, "Map");
-  add_checked(command, "--columns", options.grid.columns, CLI::Range(1, 1000),
-              "values of c_c or c_h");
-  add_checked(command, "--rows", options.grid.rows, CLI::Range(2, 1000), "values of c_F");
-  add_checked(command, "--map-steps", options.grid.steps, CLI::Range(1L, most_steps),
-              "of each rod");
-}
-
 }  // namespace
 
 void add_stability(CLI::App& app) {
-  CLI::App* command = app.add_subcommand(
-      "stability", "where the force model's steppers break: hard cases, or a map of c_F");
-  const auto options = std::make_shared<StabilityOptions>();
-  command->add_option("SCENE", options->scene,
-                      "scene file (TOML) of a map; without it the hard cases' rod");
-  CLI::Option* map_option =
-      command
-          ->add_option("--map", options->map,
-                       "cF-cc or cF-ch: where steps stop being stable, predicted and measured")
-          ->check(CLI::IsMember({"cF-cc", "cF-ch"}));
-  add_checked(*command, "--threads", options->threads, CLI::Range(0, 1024),
-              "at most; 0: as many as the machine has");
-  add_case_options(*command, *options);
-  add_map_options(*command, *options);
-  add_output_options(*command, options->output);
-  options->plot.add_to(*command, "the map")->needs(map_option)->group("Map");
-  command->footer(
-      "Exit status 1: stepper auto or implicit does not pass a case.\n"
-      "Examples:\n  dlo stability --case folded\n  dlo stability --map cF-cc --columns 8 --plot "
-      "map.svg");
-  command->callback([options] { options->map.empty() ? run_cases(*options) : run_map(*options); });
+  add_command<StabilityOptions>(
+      app, "stability",
+      [](const StabilityOptions& options) {
+        options.map.empty() ? run_cases(options) : run_map(options);
+      },
+      [](Command& command, StabilityOptions& o) {
+        command.bind("SCENE", o.scene, "--map", o.map, "--threads", o.threads, "--case",
+                     o.cases.name_contains, "--stepper", o.steppers, "--max-steps",
+                     o.cases.max_steps, "--max-steps-auto", o.cases.max_steps_auto,
+                     "--steps-at-rest", o.cases.steps_at_rest, "--columns", o.grid.columns,
+                     "--rows", o.grid.rows, "--map-steps", o.grid.steps, o.output, o.plot);
+      });
 }
 
 }  // namespace dlo::cli

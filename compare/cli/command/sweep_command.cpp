@@ -13,7 +13,7 @@
 #include "batch/sweep.hpp"
 #include "command/commands.hpp"
 #include "dlo/compare/error.hpp"
-#include "option/option_values.hpp"
+#include "option/command_line.hpp"
 #include "option/output.hpp"
 #include "option/plot.hpp"
 #include "option/scene_options.hpp"
@@ -28,7 +28,7 @@ namespace {
 struct SweepOptions {
   std::vector<std::string> files;
   std::vector<std::string> vary;
-  std::string model = "energy";
+  compare::SweepModel model = compare::SweepModel::energy;
   std::string format = "csv";
   std::string part;
   std::string output;
@@ -38,8 +38,9 @@ struct SweepOptions {
 };
 
 /// Returns the result columns that the picture of a sweep shows.
-std::vector<std::string> drawn_results(const std::string& model) {
-  if (model.starts_with("compare")) return {"rms_over_length", "effective_modulus_ratio"};
+std::vector<std::string> drawn_results(compare::SweepModel model) {
+  if (model == compare::SweepModel::compare || model == compare::SweepModel::compare_chain)
+    return {"rms_over_length", "effective_modulus_ratio"};
   return {"tip_x_m", "tip_y_m", "energy_J"};
 }
 
@@ -83,14 +84,13 @@ compare::Sweep sweep_of(const SweepOptions& options) {
   axes.reserve(options.vary.size());
   for (const std::string& text : options.vary) axes.push_back(compare::parse_axis(text));
   return {compare::load_scene_template(options.files.front(), options.scene.materials()),
-          compare::Grid(std::move(axes)), compare::from_name<compare::SweepModel>(options.model),
-          options.scene.solve()};
+          compare::Grid(std::move(axes)), options.model, options.scene.solve()};
 }
 
 /// Reports the properties that a model neglects, for the first or the last scene of the grid that
 /// has any. A scene that cannot be read is reported in its row.
-void warn_of_polygons_in(const compare::Sweep& sweep, const std::string& model) {
-  const bool is_rod = model == "energy" || model == "exact";
+void warn_of_polygons_in(const compare::Sweep& sweep, compare::SweepModel model) {
+  const bool is_rod = model == compare::SweepModel::energy || model == compare::SweepModel::exact;
   for (const std::int64_t row : {std::int64_t{0}, sweep.grid().size() - 1}) {
     try {
       const compare::Scene scene = sweep.scene(row);
@@ -163,7 +163,8 @@ void require_drawable(const SweepOptions& options) {
   }
 }
 
-void run(SweepOptions options) {
+void run(const SweepOptions& given) {
+  SweepOptions options = given;
   if (!options.vary.empty()) sort_words(options);
   require_drawable(options);
   if (options.files.size() != 1) {
@@ -184,39 +185,10 @@ void run(SweepOptions options) {
 }  // namespace
 
 void add_sweep(CLI::App& app) {
-  CLI::App* command =
-      app.add_subcommand("sweep", "a grid over any fields of a scene, as a table (CSV)");
-  const auto options = std::make_shared<SweepOptions>();
-  command->add_option("FILE", options->files, "scene file (TOML)")->required();
-  command
-      ->add_option(
-          "--vary", options->vary,
-          "a field and its values, once for each field: a dotted path such as rod.length or "
-          "gripper.0.direction, or gamma, which scales gravity; values a,b,c or lin:a:b:n or "
-          "log:a:b:n, with units as in scene files. The last field changes fastest")
-      ->type_name("FIELD=VALUES")
-      ->allow_extra_args(false);
-  add_checked(*command, "--format", options->format, CLI::IsMember({"csv"}), "csv");
-  add_checked(*command, "--model", options->model,
-              CLI::IsMember(compare::names<compare::SweepModel>()),
-              compare::meanings<compare::SweepModel>());
-  add_file(*command, "-o,--output", options->output, "write to FILE instead of standard output");
-  add_checked(*command, "--threads", options->threads, CLI::Range(0, 4096), "0: all cores");
-  command->add_option("--part", options->part, "compute only the rows I, I+N, I+2N, ..., from 1")
-      ->type_name("I/N");
-  options->plot.add_to(*command, "the results over one field, or over two,");
-  options->scene.add_solvers_to(*command);
-  // --calibrated cannot be applied: sweep varies the file's content before it becomes a scene.
-  command->remove_option(command->get_option("--calibrated"));
-  command->footer(
-      "Exit status is 0 also if rows have no result: a line on standard error counts them, their\n"
-      "column status says why.\n"
-      "Example:\n"
-      "  dlo sweep data/scenes/spring_steel_175.toml --vary gamma=log:0.1:10:5 \\\n"
-      "      --vary gripper.0.direction=\"-90 deg\",\"0 deg\" -o map.csv --plot map.svg\n"
-      "One of two parts:\n"
-      "  dlo sweep data/scenes/cable.toml --vary gamma=log:1:10:9 --part 1/2 -o part.1.csv");
-  command->callback([options] { run(*options); });
+  add_command<SweepOptions>(app, "sweep", run, [](Command& command, SweepOptions& o) {
+    command.bind("FILE", o.files, "--vary", o.vary, "--format", o.format, "--model", o.model,
+                 "--output", o.output, "--threads", o.threads, "--part", o.part, o.plot, o.scene);
+  });
 }
 
 }  // namespace dlo::cli

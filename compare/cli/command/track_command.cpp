@@ -7,7 +7,7 @@
 #include "command/commands.hpp"
 #include "dlo/compare/error.hpp"
 #include "motion/track.hpp"
-#include "option/option_values.hpp"
+#include "option/command_line.hpp"
 #include "option/output.hpp"
 #include "option/plot.hpp"
 #include "option/scene_options.hpp"
@@ -58,9 +58,10 @@ void run(const TrackCommand& command) {
   }
   write_output(
       command.output,
-      {.text = [&] { return track_text(result, scene); },
-       .json = [&] { return json_text(track_document(result, scene, command.frames).json); },
-       .csv = [&] { return track_csv(result, scene, command.frames); }});
+      Formats{
+          {"text", [&] { return track_text(result, scene); }},
+          {"json", [&] { return json_text(track_document(result, scene, command.frames).json); }},
+          {"csv", [&] { return track_csv(result, scene, command.frames); }}});
   command.plot.draw([&] {
     return compare::track_picture(scene, {track, dynamic}, result.options);
   });
@@ -73,50 +74,14 @@ void run(const TrackCommand& command) {
 }  // namespace
 
 void add_track(CLI::App& app) {
-  CLI::App* command = app.add_subcommand(
-      "track", "follow the rod while grippers and obstacles move: forces, contacts, snaps, lag");
-  const auto options = std::make_shared<TrackCommand>();
-  command->add_option("SCENE", options->scene, "scene file (TOML) with poses")->required();
-  const auto rate = [&](const std::string& name, std::optional<double>& value,
-                        const std::string& what) {
-    command->add_option(name, value, what)->check(number_between(1e-6, 1e9))->type_name("HZ");
-  };
-  constexpr double most = 1e12;  // [s], the limit of times in files
-  command
-      ->add_option("--from", options->request.options.from,
-                   "first time [s], default the first pose's")
-      ->check(number_between(-most, most));
-  command->add_option("--to", options->request.options.to, "last time [s], default the last pose's")
-      ->check(number_between(-most, most));
-  rate("--frame-rate", options->request.frame_rate,
-       "frames a second, default [track] frame_rate of the scene, or 1000");
-  rate("--obstacle-rate", options->request.obstacle_rate,
-       "how often obstacles move, default [track] obstacle_rate, or with every frame");
-  rate("--step-rate", options->request.step_rate,
-       "steps of the force model a second, default [track] step_rate, or 30000");
-  command->add_flag("--no-force", options->no_force, "leave the force model out");
-  CLI::Option* const dynamic = command->add_flag("--dynamic", options->dynamic,
-                                                 "the rod with its inertia too, as its shapes at "
-                                                 "rest move at first; the force model against it");
-  options->damping.add_to(*command, dynamic);
-  add_checked(*command, "--samples", options->request.options.samples, CLI::Range(2, 10000),
-              "points of a frame's shape");
-  add_checked(*command, "--every", options->frames.every, CLI::Range(1, 100000000),
-              "write every so many-th frame to JSON, CSV and ParaView, and those of events");
-  command->add_flag("--shapes", options->frames.points, "in JSON the frames' points too");
-  add_file(*command, "--paraview", options->paraview,
-           "write FILE such as rod.vtk.series for ParaView, and rod_00000.vtk, .. beside it");
-  options->overrides.add_moving_to(*command);
-  options->plot.add_to(*command, "shapes over time and the grippers' forces");
-  add_output_options(*command, options->output);
-  command->footer(
-      "Exit status 3: the motion asks for what cannot be, such as grippers farther apart than\n"
-      "the rod, or the rod passes through itself; what was before it is written.\n"
-      "Examples:\n"
-      "  dlo track data/scenes/corner_routing.toml --frame-rate 100 --no-force\n"
-      "  dlo track data/scenes/buckling_wire.toml --frame-rate 50 --format csv\n"
-      "  dlo track data/scenes/swung_rod.toml --frame-rate 50 --dynamic --damping 0.01");
-  command->callback([options] { run(*options); });
+  add_command<TrackCommand>(app, "track", run, [](Command& command, TrackCommand& o) {
+    command.bind("SCENE", o.scene, "--from", o.request.options.from, "--to", o.request.options.to,
+                 "--frame-rate", o.request.frame_rate, "--obstacle-rate", o.request.obstacle_rate,
+                 "--step-rate", o.request.step_rate, "--no-force", o.no_force, "--dynamic",
+                 o.dynamic, o.damping, "--samples", o.request.options.samples, "--every",
+                 o.frames.every, "--shapes", o.frames.points, "--paraview", o.paraview, o.overrides,
+                 o.plot, o.output);
+  });
 }
 
 }  // namespace dlo::cli

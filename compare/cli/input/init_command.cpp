@@ -13,7 +13,7 @@
 #include "dlo/compare/error.hpp"
 #include "dlo/compare/scene.hpp"
 #include "dlo/compare/scene_file.hpp"
-#include "option/option_values.hpp"
+#include "option/command_line.hpp"
 #include "option/output.hpp"
 #include "reading/new_scene.hpp"
 
@@ -86,7 +86,8 @@ std::string text_of(const compare::SceneChoices& choices,
   }
 }
 
-void run(InitOptions options) {
+void run(const InitOptions& given) {
+  InitOptions options = given;
   const std::string file = file_of(options.target, options.choices.name).string();
   std::error_code unknown;  // ignored: an unusable name is reported when the file is written
   if (!options.force && std::filesystem::exists(std::filesystem::symlink_status(file, unknown))) {
@@ -107,42 +108,12 @@ void run(InitOptions options) {
 }  // namespace
 
 void add_init(CLI::App& app) {
-  CLI::App* command = app.add_subcommand("init", "write a commented scene file to start from");
-  const auto options = std::make_shared<InitOptions>();
-  command->add_option("NAME", options->target,
-                      "name of the scene, or FILE.toml; default scene.toml");
-  compare::SceneChoices& choices = options->choices;
-  const auto add = [command](const char* name, std::string& value, const char* type,
-                             const char* words) {
-    return command->add_option(name, value, words)->type_name(type);
-  };
-  add("--length", choices.length, "LENGTH", "of the rod, such as \"2 m\"")->capture_default_str();
-  add("--diameter", choices.diameter, "LENGTH", "of the rod, such as \"6 mm\"")
-      ->capture_default_str();
-  CLI::Option* material =
-      add("--material", choices.material, "MATERIAL", "a name that dlo materials lists")
-          ->capture_default_str();
-  CLI::Option* modulus = add("--youngs-modulus", choices.youngs_modulus, "MODULUS",
-                             "of a material of your own, such as \"5 MPa\"")
-                             ->excludes(material);
-  modulus->needs(
-      add("--density", choices.density, "DENSITY", "and its density, such as \"1100 kg/m^3\"")
-          ->needs(modulus));
-  add("--direction", choices.direction, "ANGLE",
-      "of the rod in its gripper: \"-90 deg\" hangs down, \"90 deg\" stands up; or a vector such "
-      "as \"[1, 0, 0]\"")
-      ->capture_default_str();
-  add_checked(*command, "--up", choices.up, CLI::IsMember({"y", "z"}),
-              "the axis against gravity, y or z");
-  add_file(*command, "--materials", options->materials,
-           "materials file instead of the built-in one");
-  command->add_flag("--force", options->force, "replace the file if it exists");
-  command->footer(
-      "Examples:\n"
-      "  dlo init cable.toml --length \"2 m\" --diameter \"6 mm\" --material silicone\n"
-      "  dlo init hose --youngs-modulus \"5 MPa\" --density \"1100 kg/m^3\" --direction \"30 deg\" "
-      "--up z");
-  command->callback([options] { run(*options); });
+  add_command<InitOptions>(app, "init", run, [](Command& command, InitOptions& o) {
+    command.bind("NAME", o.target, "--length", o.choices.length, "--diameter", o.choices.diameter,
+                 "--material", o.choices.material, "--youngs-modulus", o.choices.youngs_modulus,
+                 "--density", o.choices.density, "--direction", o.choices.direction, "--up",
+                 o.choices.up, "--materials", o.materials, "--force", o.force);
+  });
 }
 
 }  // namespace dlo::cli

@@ -4,7 +4,7 @@
 #include "command/commands.hpp"
 #include "dlo/compare/material.hpp"
 #include "format/json.hpp"
-#include "option/option_values.hpp"
+#include "option/command_line.hpp"
 #include "option/output.hpp"
 #include "option/scene_options.hpp"
 #include "record/csv_table.hpp"
@@ -39,13 +39,9 @@ void run(const MaterialsOptions& options) {
 }  // namespace
 
 void add_materials(CLI::App& app) {
-  CLI::App* command =
-      app.add_subcommand("materials", "the materials that a scene can name, with their values");
-  const auto options = std::make_shared<MaterialsOptions>();
-  add_file(*command, "--materials", options->file, "materials file instead of the built-in one");
-  add_output_options(*command, options->output);
-  command->footer("Example:\n  dlo materials");
-  command->callback([options] { run(*options); });
+  add_command<MaterialsOptions>(app, "materials", run, [](Command& command, MaterialsOptions& o) {
+    command.bind("--materials", o.file, o.output);
+  });
 }
 
 }  // namespace dlo::cli

@@ -3,6 +3,7 @@
 
 #include "command/commands.hpp"
 #include "format/scene_document.hpp"
+#include "option/command_line.hpp"
 #include "option/output.hpp"
 #include "option/scene_options.hpp"
 #include "record/csv_table.hpp"
@@ -24,17 +25,9 @@ void run(const ShowOptions& options) {
 }  // namespace
 
 void add_scene(CLI::App& app) {
-  CLI::App* command = app.add_subcommand(
-      "scene", "a scene in SI units with all that follows from it, for other programs");
-  const auto options = std::make_shared<ShowOptions>();
-  command->add_option("SCENE", options->scene, "scene file (TOML)")->required();
-  options->overrides.add_settings_to(*command);
-  add_output_options(*command, options->output, {"text", "json"});
-  command->footer(
-      "Examples:\n"
-      "  dlo scene data/scenes/twisted_wire.toml\n"
-      "  dlo scene data/scenes/spliced_cable.toml --points 32 -o scene.json");
-  command->callback([options] { run(*options); });
+  add_command<ShowOptions>(app, "scene", run, [](Command& command, ShowOptions& o) {
+    command.bind("SCENE", o.scene, o.overrides, o.output);
+  });
 }
 
 }  // namespace dlo::cli

@@ -3,12 +3,10 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <iterator>
-#include <string_view>
-#include <utility>
 
 #include "dlo/compare/choice.hpp"
 #include "dlo/compare/error.hpp"
+#include "option/command_line.hpp"
 #include "option/output.hpp"
 
 namespace dlo::cli {
@@ -17,81 +15,6 @@ namespace {
 using Names = std::vector<std::string>;
 
 const std::string law_setting = "law";
-
-/// Names for several options in the table.
-constexpr std::pair<std::string_view, std::string_view> option_groups[] = {
-    {"FORCE",
-     "--parameters --points --law --bookkeeping --stepper --bending-rule --design-curvature --c-b "
-     "--c-c --c-F --c-h --l-s"},
-    {"LIMITS", "--max-steps --rest-tolerance"},
-    {"CONSTANTS", "--stepper --c-F --c-h --l-s"}};
-
-constexpr const char* fits_force = "a fit of the force model: no --shape, --motion, --segments";
-constexpr const char* writes_plan = "--explain, --format json";
-
-/// IneffectiveOptions as words that are separated by blanks.
-struct Row {
-  std::string_view command, options;
-  /// "--x": it is given; "!--x": it is not; "--x=a,b": it has one of these values.
-  std::string_view conditions;
-  std::string allowed;
-  NoEffect response = NoEffect::refused;
-};
-
-const Row table[] = {
-    {"", "--design-curvature --bending-rule", "law=hooke", "--law paper"},
-    {"calibrate", "--register --arc-lengths", "!--shape", "--shape FILE"},
-    {"calibrate", "--unit", "!--shape !--segments", "--shape FILE, --segments FILE"},
-    {"calibrate", "--unit", "!--shape --segments=N", "--shape FILE, --segments FILE"},
-    {"calibrate", "--segments", "--motion", "no --motion"},
-    {"calibrate", "FORCE LIMITS", "--shape", fits_force},
-    {"calibrate", "FORCE LIMITS", "--motion", fits_force},
-    {"calibrate", "FORCE LIMITS", "--segments", fits_force},
-    {"calibrate", "--bending-rule --c-F --c-h --l-s", "",
-     "other options of the force model; calibrate finds these"},
-    {"calibrate", "--format", "--format=csv --motion", "text, json, toml"},
-    {"calibrate", "--format", "--format=csv,toml --segments !--shape", "text, json"},
-    {"check", "--format", "--format=markdown --motion", "text, json, csv"},
-    {"compare", "--target-error", "!--explain --format=text,csv", writes_plan},
-    {"solve", "--format", "--format=csv,vtk --all", "text, json"},
-    {"solve", "--format", "--format=csv,vtk --explain", "text, json"},
-    {"solve", "--target-error", "--model=chain,force !--explain --format=text,csv,vtk",
-     std::string(writes_plan) + ", --model energy, exact"},
-    {"solve", "FORCE", "--model=energy,exact !--explain --format=text,csv,vtk",
-     std::string(writes_plan) + ", --model chain, force", NoEffect::stated},
-    {"solve", "LIMITS", "--model=energy,exact,chain", "--model force", NoEffect::stated},
-    {"solve", "--terms", "--model=exact,chain,force", "--model energy", NoEffect::stated},
-    {"solve", "CONSTANTS", "--model=chain", "--model force", NoEffect::stated},
-    {"regress", "CONSTANTS LIMITS", "--model=chain", "--model force"},
-    {"sweep", "LIMITS", "--model=energy,exact,chain,compare-chain", "--model force, compare"},
-    {"sweep", "--terms", "--model=exact,chain,force", "--model energy, compare, compare-chain"},
-    {"track", "FORCE LIMITS --step-rate", "--no-force", "no --no-force"},
-    {"track", "--shapes", "--format=text,csv", "--format json"},
-    {"track", "--every", "--format=text !--paraview", "--format json, csv, --paraview FILE"},
-    {"modes", "--samples", "--format=text,csv", "--format json"},
-    {"stability", "--case --stepper --max-steps --max-steps-auto --steps-at-rest", "--map",
-     "no --map"},
-    {"stability", "SCENE --columns --rows --map-steps", "!--map", "--map cF-cc, cF-ch"},
-    {"bench", "--time-limit", "!--with", "--with NAME=COMMAND"},
-    {"suite", "--points --time-limit --state --baseline --markdown --junit --report --output",
-     "!--with", "--with NAME=COMMAND"},
-    {"suite", "--relative --absolute", "!--baseline", "--baseline FILE"}};
-
-/// Returns the words of a text, each group replaced by its options.
-Names split_words(std::string_view text) {
-  Names words;
-  for (const std::string& word : CLI::detail::split(std::string(text), ' ')) {
-    const auto* const group =
-        std::ranges::find(option_groups, word, [](const auto& one) { return one.first; });
-    if (group == std::end(option_groups)) {
-      if (!word.empty()) words.push_back(word);
-      continue;
-    }
-    const Names options = split_words(group->second);
-    words.insert(words.end(), options.begin(), options.end());
-  }
-  return words;
-}
 
 OptionCondition condition_of(const std::string& word) {
   if (word.front() == '!') return {word.substr(1), {}};
@@ -102,10 +25,14 @@ OptionCondition condition_of(const std::string& word) {
 
 std::vector<IneffectiveOptions> rows_of_table() {
   std::vector<IneffectiveOptions> rows;
-  for (const Row& row : table) {
-    IneffectiveOptions& made = rows.emplace_back(IneffectiveOptions{
-        std::string(row.command), split_words(row.options), {}, row.allowed, row.response});
-    for (const std::string& word : split_words(row.conditions)) {
+  for (const compare::Json& row : option_table().at("ineffective")) {
+    IneffectiveOptions& made = rows.emplace_back(
+        IneffectiveOptions{row.value("command", ""),
+                           expanded(row.at("options")),
+                           {},
+                           row.at("allowed"),
+                           row.value("stated", false) ? NoEffect::stated : NoEffect::refused});
+    for (const std::string& word : expanded(row.value("when", ""))) {
       made.conditions.push_back(condition_of(word));
     }
   }

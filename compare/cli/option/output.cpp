@@ -18,7 +18,7 @@
 #include "base/text.hpp"
 #include "dlo/compare/error.hpp"
 #include "format/json.hpp"
-#include "option/help.hpp"
+#include "option/command_line.hpp"
 #include "reading/scene_template.hpp"
 #include "trajectory/trajectory_files.hpp"
 
@@ -71,11 +71,10 @@ bool is_written_file(const CLI::Option& option) {
 /// Whether the option names input files, according to its help.
 bool is_read(const CLI::Option& option) {
   if (is_written_file(option)) return false;
-  const OptionText text = option_text(option);
   const auto names_files = [](const std::string& word) {
     return word.starts_with("SCENE") || word.starts_with("FILE");
   };
-  return names_files(text.value) || names_files(text.names.front());
+  return names_files(option.get_type_name()) || names_files(names_of(option).front());
 }
 
 /// Returns the input files, except those of one option.
@@ -126,6 +125,8 @@ void refuse_among_frames(const std::string& series, const std::vector<std::strin
 
 }  // namespace
 
+void end_with(ExitStatus status) { throw CLI::RuntimeError(static_cast<int>(status)); }
+
 std::string format_of_file(const std::string& file, const std::vector<std::string>& formats) {
   const std::string extension = std::filesystem::path(file).extension().string();
   for (const std::string& format : formats) {
@@ -140,25 +141,14 @@ void write_output(const OutputOptions& options, const std::string& content) {
 }
 
 void write_output(const OutputOptions& options, const Formats& formats) {
-  if (formats.toml && options.format == "toml") return write_output(options, formats.toml());
-  if (formats.markdown && options.format == "markdown") {
-    return write_output(options, formats.markdown());
-  }
-  switch (compare::from_name<Format>(options.format)) {
-    case Format::text:
-      return write_output(options, formats.text());
-    case Format::json:
-      return write_output(options, formats.json());
-    case Format::csv:
-      return write_output(options, formats.csv());
-  }
+  write_output(options, formats.at(options.format)());
 }
 
 void write_output(const OutputOptions& options, const compare::Document& document,
                   const std::function<std::string()>& csv) {
-  write_output(options, {.text = [&] { return document.text(); },
-                         .json = [&] { return json_text(document.json); },
-                         .csv = [&] { return csv ? csv() : document.csv(); }});
+  write_output(options, Formats{{"text", [&] { return document.text(); }},
+                                {"json", [&] { return json_text(document.json); }},
+                                {"csv", [&] { return csv ? csv() : document.csv(); }}});
 }
 
 RedirectedOutput::RedirectedOutput(std::string& out, std::string& err)
@@ -235,12 +225,8 @@ void check_output(const std::string& option, const std::string& file,
   }
 }
 
-std::vector<std::string> input_files(const CLI::App& command) {
-  return input_files_but(command, nullptr);
-}
-
 void check_outputs(const CLI::App& command) {
-  const std::vector<std::string> inputs = input_files(command);
+  const std::vector<std::string> inputs = input_files_but(command, nullptr);
   std::vector<std::string> outputs;
   std::vector<std::string> series;
   std::error_code unknown;
@@ -248,7 +234,7 @@ void check_outputs(const CLI::App& command) {
     if (!is_written(command, *option)) continue;
     const std::string name = "--" + option->get_lnames().front();
     for (const std::string& file : option->results()) {
-      const bool folder = option_text(*option).value == "DIR";
+      const bool folder = option->get_type_name() == "DIR";
       if (file.empty() && folder) {
         throw compare::InputError(
             fmt::format("{} \"\": empty (allowed: the name of a folder)", name));

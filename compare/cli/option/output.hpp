@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <functional>
+#include <map>
 #include <mutex>
 #include <string>
 #include <string_view>
@@ -10,7 +11,6 @@
 #include <vector>
 
 #include "base/quote.hpp"
-#include "dlo/compare/choice.hpp"
 #include "record/csv_table.hpp"
 
 namespace CLI {  // NOLINT(readability-identifier-naming): the library's own
@@ -21,36 +21,32 @@ namespace dlo::cli {
 
 using compare::append;
 
-enum class Format { text, json, csv };
+class Command;
 
-}  // namespace dlo::cli
-
-template <>
-struct dlo::compare::Choices<dlo::cli::Format> {
-  static constexpr Choice<cli::Format> all[] = {{cli::Format::text, "text", "for people"},
-                                                {cli::Format::json, "json", "for programs"},
-                                                {cli::Format::csv, "csv", "for tables"}};
+/// Exit status of a command.
+enum class ExitStatus : int {
+  good = 0,
+  outside_tolerance = 1,
+  bad_input = 2,
+  not_converged = 3,
+  no_resources = 4,  ///< also for internal errors
+  not_written = 5,
 };
 
-namespace dlo::cli {
+/// Ends a command that has printed its result.
+[[noreturn]] void end_with(ExitStatus status);
 
 /// Options --format and -o.
 struct OutputOptions {
   std::string format = "text";
   std::string file;
 
-  /// Whether the format is `wanted`; false for `vtk`, `toml` and `markdown`, which only some
-  /// commands have.
-  [[nodiscard]] bool is(Format wanted) const { return format == compare::to_string(wanted); }
+  /// Adds the options. The format is that of the file's extension unless --format is given.
+  void add_to(Command& command);
 };
 
-/// Functions that return a result in each of its formats, called only if needed.
-struct Formats {
-  std::function<std::string()> text, json;
-  std::function<std::string()> csv = {};       ///< only for commands with this format
-  std::function<std::string()> toml = {};      ///< only for commands with this format
-  std::function<std::string()> markdown = {};  ///< only for commands with this format
-};
+/// Functions that return a result, by the names of its formats.
+using Formats = std::map<std::string, std::function<std::string()>>;
 
 /// Returns the format of a file's extension: "csv" for shape.csv; empty unless it is one of
 /// `formats`.
@@ -123,9 +119,5 @@ void check_output(const std::string& option, const std::string& file,
 /// refuses files that are written twice. Commands check folders themselves.
 /// @throws compare::InputError
 void check_outputs(const CLI::App& command);
-
-/// Returns the files that the command's arguments and options name for reading, and the files that
-/// scenes among them name.
-[[nodiscard]] std::vector<std::string> input_files(const CLI::App& command);
 
 }  // namespace dlo::cli

@@ -11,7 +11,6 @@
 #include "base/temporary_path.hpp"
 #include "dlo/compare/error.hpp"
 #include "figure/gnuplot.hpp"
-#include "option/option_values.hpp"
 
 namespace dlo::cli {
 namespace {
@@ -32,11 +31,6 @@ std::optional<compare::PictureFormat> format_of(const std::string& file) {
 }
 
 }  // namespace
-
-CLI::Option* PlotOptions::add_to(CLI::App& command, const std::string& what) {
-  return add_file(command, "--plot", file_,
-                  "draw " + what + " into FILE.svg, FILE.png or FILE.pdf (by gnuplot)");
-}
 
 void PlotOptions::require_drawable() const {
   if (!draws()) return;

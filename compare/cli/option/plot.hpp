@@ -1,12 +1,12 @@
 #pragma once
 
-#include <CLI/CLI.hpp>
 #include <functional>
 #include <string>
 #include <vector>
 
 #include "figure/gnuplot.hpp"
 #include "figure/layout.hpp"
+#include "option/command_line.hpp"
 #include "report/page.hpp"
 
 namespace dlo::cli {
@@ -25,9 +25,7 @@ namespace dlo::cli {
 /// Option --plot FILE: a picture of the result, in addition to the result.
 class PlotOptions {
  public:
-  /// Adds the option. @param what  content of the picture, for the help
-  /// @return the new option
-  CLI::Option* add_to(CLI::App& command, const std::string& what);
+  void add_to(Command& command) { command.add("--plot", file_); }
 
   /// Whether a picture is requested.
   [[nodiscard]] bool draws() const { return !file_.empty(); }

@@ -3,9 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <fstream>
 #include <limits>
-#include <sstream>
 #include <type_traits>
 #include <utility>
 
@@ -13,8 +11,6 @@
 #include "dlo/compare/error.hpp"
 #include "dlo/compare/scene_file.hpp"
 #include "option/effect.hpp"
-#include "option/option_values.hpp"
-#include "option/share.hpp"
 #include "polygon/natural_plane.hpp"
 #include "scene/scene_problem.hpp"
 #include "toml/quantity.hpp"
@@ -27,8 +23,6 @@ using compare::InputError;
 using Settings = compare::ForceModelSettings;
 
 constexpr double unbounded = std::numeric_limits<double>::infinity();
-constexpr const char* solvers_group = "Solvers";
-constexpr const char* force_model_group = "Force model (override the scene)";
 
 /// Reads a quantity of an option: with a unit, or a number in SI units.
 double option_quantity(const std::string& option, const std::string& text, Dimension dimension,
@@ -85,126 +79,51 @@ void warn_of_polygons(const compare::Scene& scene) {
   }
 }
 
-void add_output_options(CLI::App& command, OutputOptions& options,
-                        const std::vector<std::string>& formats) {
-  add_checked(command, "--format", options.format, CLI::IsMember(formats),
-              fmt::format("{}", fmt::join(formats, ", ")));
-  add_file(command, "-o,--output", options.file,
-           "write to FILE instead of standard output; its extension is the format unless --format "
-           "is given");
-  take_format_of_file(command, options, formats);
-}
-
-void take_format_of_file(CLI::App& command, OutputOptions& options,
-                         const std::vector<std::string>& formats) {
-  command.parse_complete_callback([&command, &options, formats] {
-    if (command.count("--format") > 0) return;
-    const std::string format = format_of_file(options.file, formats);
-    if (format.empty()) return;
-    options.format = format;
-    command.get_option("--format")->default_str(format);
+void OutputOptions::add_to(Command& command) {
+  command.bind("--format", format, "--output", file);
+  CLI::App& app = command.app();
+  app.parse_complete_callback([this, &app, formats = command.choices("--format")] {
+    if (app.count("--format") > 0) return;
+    const std::string extension = format_of_file(file, formats);
+    if (extension.empty()) return;
+    format = extension;
+    app.get_option("--format")->default_str(format);
   });
 }
 
-void PlanOptions::add_to(CLI::App& command) {
-  const OptionGroup group(command, "Plan");
-  command.add_flag("--explain", explain_,
-                   "show what the scene needs, what is neglected and what that could change");
-  command
-      .add_option("--target-error", plan_.target,
-                  "error that the plan chooses N for, share of the length such as 0.1%")
-      ->transform(share_of_length())
-      ->capture_default_str();
+void PlanOptions::add_to(Command& command) {
+  command.bind("--explain", explain_, "--target-error", plan_.target);
 }
 
-void SceneOptions::add_to(CLI::App& command, Steps steps) {
-  add_time_to(command);
-  add_force_model_to(command);
-  add_solvers_to(command, steps);
-}
-
-void SceneOptions::add_moving_to(CLI::App& command) {
-  add_force_model_to(command);
-  add_solvers_to(command, Steps::made);
-}
-
-void SceneOptions::add_time_to(CLI::App& command) {
-  constexpr double most = 1e12;  // [s], the limit of times in files
-  command
-      .add_option("--time", time_,
-                  "of a scene that moves: as it is at this time [s], default the first pose's")
-      ->check(number_between(-most, most));
-}
-
-void SceneOptions::add_settings_to(CLI::App& command) {
-  add_time_to(command);
-  add_force_model_to(command);
-  add_materials_to(command);
-}
-
-void SceneOptions::add_force_model_to(CLI::App& command) {
-  const OptionGroup group(command, force_model_group);
-  command_ = &command;
-  add_file(command, "--parameters", parameters_,
-           "[force_model] of a file such as dlo calibrate writes, instead of the scene's");
-  command.add_option("--points", points_, "N")->check(CLI::Range(4, 1000000));
-  const auto add = [this, &command](const char* name, const std::string& words, const auto& set) {
-    return command.add_option_function<std::string>(
-        name,
-        [this, set](const std::string& text) {
-          changes_.emplace_back([set, text](Settings& settings) { set(settings, text); });
-        },
-        words);
-  };
-  const auto choice = [&add](const char* name, auto field, const std::string& of_what = "") {
+void SceneOptions::add_to(Command& command) {
+  command_ = &command.app();
+  command.bind("--time", time_, "--parameters", parameters_, "--points", points_);
+  const auto choice = [&](const char* name, auto field) {
     using Value = std::remove_reference_t<decltype(std::declval<Settings&>().*field)>;
-    add(name, of_what + compare::meanings<Value>(), [field](Settings& settings, const auto& text) {
-      settings.*field = compare::from_name<Value>(text);
-    })->check(CLI::IsMember(compare::names<Value>()));
+    command.add_choice<Value>(name, [this, field](Value value) {
+      changes_.emplace_back([field, value](Settings& settings) { settings.*field = value; });
+    });
   };
-  const auto quantity = [&add](const char* name, std::optional<double> Settings::*field,
-                               Dimension dimension, const char* words, double below = unbounded) {
-    add(name, words, [=](Settings& settings, const std::string& text) {
-      settings.*field = option_quantity(name, text, dimension, below);
+  const auto quantity = [&](const char* name, std::optional<double> Settings::*field,
+                            Dimension dimension, double below = unbounded) {
+    command.add_function(name, [=, this](const std::string& text) {
+      const double value = option_quantity(name, text, dimension, below);
+      changes_.emplace_back([field, value](Settings& settings) { settings.*field = value; });
     });
   };
   choice("--law", &Settings::law);
   choice("--bookkeeping", &Settings::bookkeeping);
   choice("--stepper", &Settings::stepper);
-  choice("--bending-rule", &Settings::bending_rule, "for c_b: ");
-  quantity("--design-curvature", &Settings::design_curvature, Dimension::curvature,
-           "k of Formula 21 [1/m]");
-  quantity("--c-b", &Settings::c_b, Dimension::force, "bending stiffness of the paper's law [N]");
-  quantity("--c-c", &Settings::c_c, Dimension::force, "stretch stiffness [N], default A E");
-  quantity("--c-F", &Settings::c_F, Dimension::number,
-           "step factor [m/N], not for stepper auto, verlet, implicit");
-  quantity("--c-h", &Settings::c_h, Dimension::number,
-           "share of the last movement [-], stepper dynamic", 1);
-  quantity("--l-s", &Settings::l_s, Dimension::length, "largest movement per step [m]");
-}
-
-void SceneOptions::add_solvers_to(CLI::App& command, Steps steps) {
-  const OptionGroup group(command, solvers_group);
-  command.add_option("--terms", solve_.terms, "curvature terms of the energy model, 0: as needed")
-      ->check(CLI::Range(0, 128));
-  add_checked(command, "--max-evaluations", solve_.max_evaluations, CLI::Range(1, 1000000000),
-              "of the minimisers");
-  add_checked(command, "--time-limit", solve_.time_limit, number_between(1e-3, 1e9),
-              "of each solve [s]; if given, of the whole command too (not of sweep and regress)");
-  add_materials_to(command);
-  if (steps == Steps::none) return;
-  add_checked(command, "--max-steps", solve_.max_steps, CLI::Range(1L, 1000000000000L),
-              "of the force model");
-  add_checked(command, "--rest-tolerance", solve_.rest_tolerance, number_between(1e-12, 1e-1),
-              "distance from rest at which the force model stops, share of the length");
-}
-
-void SceneOptions::add_materials_to(CLI::App& command) {
-  const OptionGroup group(command, solvers_group);
-  add_file(command, "--materials", materials_, "materials file instead of the built-in one");
-  add_file(command, "--calibrated", calibrated_,
-           "what dlo calibrate -o FILE.toml wrote: its rod, how its clamps are held, and its "
-           "damping in motion, in the place of the scene's");
+  choice("--bending-rule", &Settings::bending_rule);
+  quantity("--design-curvature", &Settings::design_curvature, Dimension::curvature);
+  quantity("--c-b", &Settings::c_b, Dimension::force);
+  quantity("--c-c", &Settings::c_c, Dimension::force);
+  quantity("--c-F", &Settings::c_F, Dimension::number);
+  quantity("--c-h", &Settings::c_h, Dimension::number, 1);
+  quantity("--l-s", &Settings::l_s, Dimension::length);
+  command.bind("--terms", solve_.terms, "--max-evaluations", solve_.max_evaluations, "--time-limit",
+               solve_.time_limit, "--materials", materials_, "--calibrated", calibrated_,
+               "--max-steps", solve_.max_steps, "--rest-tolerance", solve_.rest_tolerance);
 }
 
 void SceneOptions::apply(compare::Scene& scene) const {

@@ -11,23 +11,16 @@
 #include "dlo/compare/scene.hpp"
 #include "dlo/compare/solution.hpp"
 #include "dlo/compare/solve.hpp"
+#include "option/command_line.hpp"
 #include "option/output.hpp"
 
 namespace dlo::cli {
 
-/// Whether a command makes steps of the force model, and so has the options that limit them.
-enum class Steps { made, none };
-
 /// Options that override a scene's [force_model] and control the solvers.
 class SceneOptions {
  public:
-  void add_to(CLI::App& command, Steps steps = Steps::made);
-  /// Adds the options for a scene that is examined while it moves: without --time.
-  void add_moving_to(CLI::App& command);
-  /// Adds only --time, --materials, --calibrated and the options that override [force_model].
-  void add_settings_to(CLI::App& command);
-  /// Adds only --materials, --calibrated and the options that control the solvers.
-  void add_solvers_to(CLI::App& command, Steps steps = Steps::made);
+  /// Adds those of its options that the command has.
+  void add_to(Command& command);
 
   /// Loads a scene and applies the options. @throws compare::InputError
   [[nodiscard]] compare::Scene load(const std::string& path) const;
@@ -38,9 +31,6 @@ class SceneOptions {
   [[nodiscard]] std::vector<compare::Material> materials() const;
 
  private:
-  void add_time_to(CLI::App& command);
-  void add_force_model_to(CLI::App& command);
-  void add_materials_to(CLI::App& command);
   void apply(compare::Scene& scene) const;
 
   const CLI::App* command_ = nullptr;
@@ -55,7 +45,7 @@ class SceneOptions {
 /// Options --explain and --target-error.
 class PlanOptions {
  public:
-  void add_to(CLI::App& command);
+  void add_to(Command& command);
 
   [[nodiscard]] bool explain() const { return explain_; }
   [[nodiscard]] const compare::PlanOptions& plan() const { return plan_; }
@@ -79,13 +69,5 @@ void warn_of_polygons(const compare::Scene& scene);
 /// Reports on standard error that a study neglects twist, for a scene whose twist the models chain
 /// and force include.
 void warn_of_no_twist(const compare::Scene& scene, const std::string& study);
-
-/// Adds --format and -o. @param formats  formats that the command writes
-void add_output_options(CLI::App& command, OutputOptions& options,
-                        const std::vector<std::string>& formats = compare::names<Format>());
-
-/// Sets the format to the extension of the output file unless --format is given.
-void take_format_of_file(CLI::App& command, OutputOptions& options,
-                         const std::vector<std::string>& formats);
 
 }  // namespace dlo::cli

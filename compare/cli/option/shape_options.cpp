@@ -4,32 +4,11 @@
 
 #include "dlo/compare/error.hpp"
 #include "dlo/compare/shape_file.hpp"
-#include "option/option_values.hpp"
-#include "option/output.hpp"
 #include "toml/quantity.hpp"
 
 namespace dlo::cli {
-void ShapeOptions::add_to(CLI::App& command, ChordLengths chord) {
-  const OptionGroup group(command, "Shape files");
-  std::vector<std::string> rules = compare::names<compare::ArcLengths>();
-  if (chord == ChordLengths::not_exact_enough) {
-    std::erase(rules, compare::to_string(compare::ArcLengths::chord));
-  }
-  const std::vector<std::string> units = compare::unit_names(compare::Dimension::length);
-  add_checked(command, "--unit", unit_, CLI::IsMember(units),
-              "what the numbers are in: " + compare::one_of(units));
-  command
-      .add_flag("--register{rigid}", pose_,
-                "the file's frame is unknown: find it. --register=upright if its vertical is "
-                "known, --register=translation if all directions are")
-      ->check(CLI::IsMember(compare::names<compare::PoseFreedom>()));
-  add_checked(
-      command, "--arc-lengths", arc_lengths_, CLI::IsMember(rules),
-      chord == ChordLengths::offered
-          ? "of the points: file (its column s), nearest (points of the reference), chord (lengths "
-            "along the polyline of a whole rod) or auto: file if there is a column s, else nearest"
-          : "of the points: file (its column s), nearest (points of the rod) or auto: file if "
-            "there is a column s, else nearest");
+void ShapeOptions::add_to(Command& command) {
+  command.bind("--unit", unit_, "--register", pose_, "--arc-lengths", arc_lengths_);
 }
 
 compare::MeasuredShape ShapeOptions::load(const std::string& path) const {

@@ -1,21 +1,16 @@
 #pragma once
 
-#include <CLI/CLI.hpp>
 #include <string>
 
 #include "dlo/compare/alignment.hpp"
+#include "option/command_line.hpp"
 
 namespace dlo::cli {
-
-/// Whether a command accepts arc lengths from the chords between points, which are accurate to 1e-4
-/// l.
-enum class ChordLengths { offered, not_exact_enough };
 
 /// Options that define the meaning of the numbers in a shape file.
 class ShapeOptions {
  public:
-  /// Adds the options. @param chord  whether chord lengths of a whole rod are accurate enough
-  void add_to(CLI::App& command, ChordLengths chord);
+  void add_to(Command& command);
 
   /// Reads a shape file in the given unit. @throws compare::InputError
   [[nodiscard]] compare::MeasuredShape load(const std::string& path) const;
@@ -27,14 +22,12 @@ class ShapeOptions {
   [[nodiscard]] compare::PoseFreedom pose() const {
     return compare::from_name<compare::PoseFreedom>(pose_);
   }
-  [[nodiscard]] compare::ArcLengths arc_lengths() const {
-    return compare::from_name<compare::ArcLengths>(arc_lengths_);
-  }
+  [[nodiscard]] compare::ArcLengths arc_lengths() const { return arc_lengths_; }
 
  private:
   std::string unit_ = "m";
   std::string pose_ = "known";
-  std::string arc_lengths_ = "auto";
+  compare::ArcLengths arc_lengths_ = compare::ArcLengths::automatic;
 };
 
 }  // namespace dlo::cli

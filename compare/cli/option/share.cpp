@@ -10,7 +10,7 @@
 
 #include "dlo/compare/choice.hpp"
 #include "dlo/compare/error.hpp"
-#include "option/option_values.hpp"
+#include "option/command_line.hpp"
 #include "toml/quantity.hpp"
 
 namespace dlo::cli {
@@ -40,7 +40,7 @@ CLI::Validator share_that(std::function<bool(double)> holds, std::string of, std
     }
     return fmt::format("{} is no share{}{} (allowed: {})", text, of, problem, allowed);
   };
-  return {read, "SHARE"};
+  return {read, ""};
 }
 
 /// Returns a tolerance in m. @throws compare::InputError if it is neither a fraction nor a length
@@ -105,35 +105,8 @@ void set_growth(const std::string& name, const std::string& text,
   tolerance.absolute = of_deflection ? *of_deflection : share_from(share);
 }
 
-void add_growth_options(CLI::App& command, compare::RegressionTolerance& tolerance) {
-  constexpr double most = 1e3;
-  command
-      .add_option("--relative", tolerance.relative,
-                  "how much an error may grow, as a share of it such as 1%")
-      ->transform(share_up_to(most))
-      ->capture_default_str();
-  command
-      .add_option("--absolute", tolerance.absolute,
-                  "and how much beside that, as a share of the rod's length")
-      ->transform(share_up_to(most))
-      ->capture_default_str();
-}
-
-void DampingOptions::add_to(CLI::App& command, CLI::Option* needed) {
-  const auto add = [&](const char* name, std::optional<double>& value, const char* what,
-                       const char* type) {
-    command
-        .add_option(name, value,
-                    fmt::format("with {}: {}; default that of --calibrated, else 0",
-                                needed->get_name(), what))
-        ->check(number_between(0, std::numeric_limits<double>::max()))
-        ->needs(needed)
-        ->type_name(type);
-  };
-  add("--damping", material, "Kelvin-Voigt time tau of the material [s]", "TIME");
-  add("--drag", air, "drag of the air per length and velocity [N s/m^2]", "VALUE");
-  add("--quadratic-drag", quadratic,
-      "drag across the rod per length and squared velocity [N s^2/m^3], 1/2 rho C d", "VALUE");
+void DampingOptions::add_to(Command& command) {
+  command.bind("--damping", material, "--drag", air, "--quadratic-drag", quadratic);
 }
 
 compare::RodDamping DampingOptions::of(const compare::CalibratedRod& rod) const {

@@ -8,6 +8,7 @@
 #include "dlo/compare/calibrated_rod.hpp"
 #include "dlo/compare/shape_verdict.hpp"
 #include "motion/moving_scene.hpp"
+#include "option/command_line.hpp"
 
 namespace dlo::cli {
 
@@ -29,15 +30,11 @@ namespace dlo::cli {
 void set_growth(const std::string& name, const std::string& text,
                 compare::RegressionTolerance& tolerance);
 
-/// Adds --relative and --absolute, the tolerances of an error's growth.
-void add_growth_options(CLI::App& command, compare::RegressionTolerance& tolerance);
-
 /// Options --damping, --drag and --quadratic-drag of a rod with inertia.
 struct DampingOptions {
   std::optional<double> material, air, quadratic;  ///< see compare::RodDamping; empty if not given
 
-  /// Adds the options. @param needed  option that they require
-  void add_to(CLI::App& command, CLI::Option* needed);
+  void add_to(Command& command);
   /// Returns the given values; for others those of a calibrated rod, else 0.
   [[nodiscard]] compare::RodDamping of(const compare::CalibratedRod& rod) const;
 };

@@ -1,5 +1,3 @@
-#include "score/card_output.hpp"
-
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -8,8 +6,10 @@
 
 #include "base/quote.hpp"
 #include "base/text.hpp"
-#include "batch/regression.hpp"
+#include "batch/junit.hpp"
+#include "format/result_output.hpp"
 #include "option/output.hpp"
+#include "series/study_output.hpp"
 
 namespace dlo::cli {
 namespace {
@@ -106,18 +106,8 @@ std::vector<std::string> head_of(const Card& card) {
   return head;
 }
 
-/// Escapes a text for a cell of a Markdown table.
-std::string markdown_text(const std::string& text) {
-  std::string result;
-  for (const char c : text) {
-    if (c == '|' || c == '<' || c == '*' || c == '_' || c == '`') result += '\\';
-    result += c;
-  }
-  return result;
-}
-
 std::string markdown_row(std::vector<std::string> cells) {
-  for (std::string& cell : cells) cell = markdown_text(cell);
+  for (std::string& cell : cells) cell = markdown(cell);
   return fmt::format("| {} |\n", fmt::join(cells, " | "));
 }
 
@@ -146,15 +136,15 @@ std::string cards_text(const std::vector<Card>& cards) {
 std::string cards_markdown(const std::vector<Card>& cards) {
   std::string out;
   for (const Card& card : cards) {
-    append(out, "{}**{}**: {} (suite {})\n\n", out.empty() ? "" : "\n",
-           markdown_text(card.simulator), summary(card), card.battery_version);
+    append(out, "{}**{}**: {} (suite {})\n\n", out.empty() ? "" : "\n", markdown(card.simulator),
+           summary(card), card.battery_version);
     const std::vector<std::string> head = head_of(card);
     out += markdown_row(head);
     out += markdown_row(std::vector<std::string>(head.size(), "---"));
     for (const CardGroup& group : card.groups()) out += markdown_row(row_of(group));
     std::string list;
     for (const auto& [scenes, wrong] : wrong_scenes(card)) {
-      append(list, "- `{}`: {}\n", scenes, markdown_text(wrong));
+      append(list, "- `{}`: {}\n", scenes, markdown(wrong));
     }
     if (!list.empty())
       append(out, "\n<details><summary>Scenes</summary>\n\n{}\n</details>\n", list);

@@ -7,14 +7,12 @@
 #include "command/commands.hpp"
 #include "dlo/compare/error.hpp"
 #include "format/json.hpp"
-#include "option/exit_status.hpp"
-#include "option/option_values.hpp"
+#include "option/command_line.hpp"
 #include "option/output.hpp"
 #include "option/plot.hpp"
 #include "option/scene_options.hpp"
 #include "option/share.hpp"
 #include "option/terminal.hpp"
-#include "score/card_output.hpp"
 #include "series/study_output.hpp"
 #include "suite/card.hpp"
 #include "suite/pack.hpp"
@@ -70,8 +68,9 @@ void write_cards(const SuiteOptions& options, const std::string& version,
     card.version = DLO_VERSION;
     return compare::make_cards(version, scenes, simulators, card);
   });
-  write_output(options.output, {.text = [&] { return cards_text(cards); },
-                                .json = [&] { return json_text(compare::cards_json(cards)); }});
+  write_output(options.output,
+               Formats{{"text", [&] { return cards_text(cards); }},
+                       {"json", [&] { return json_text(compare::cards_json(cards)); }}});
   if (!options.markdown.empty()) write_output({.file = options.markdown}, cards_markdown(cards));
   if (!options.junit.empty()) write_output({.file = options.junit}, cards_junit(cards));
   write_page(options.report, cards);
@@ -90,7 +89,7 @@ void write_cards(const SuiteOptions& options, const std::string& version,
     return;
   }
   const std::string changes = regression_changes_text(found.results, options.output.file);
-  if (options.output.is(Format::text) && options.output.file.empty()) {
+  if (options.output.format == "text" && options.output.file.empty()) {
     write_standard_output("\n" + changes);
   } else {
     write_standard_error(changes);
@@ -115,52 +114,13 @@ void run(const SuiteOptions& options) {
 }  // namespace
 
 void add_suite(CLI::App& app) {
-  CLI::App* command =
-      app.add_subcommand("suite", "a battery of scenes with certified answers, and a score card");
-  const auto options = std::make_shared<SuiteOptions>();
-  command
-      ->add_option(
-          "--with", options->simulators,
-          "a simulator to make the card of: NAME=COMMAND with {scene}, {points} and {shape}, or "
-          "our own chain, force, chain_paper or force_paper (law paper); may be given again")
-      ->type_name("NAME=COMMAND")
-      ->allow_extra_args(false);
-  command->add_option("--scenes", options->scenes, "classes, or names of scenes; none: all")
-      ->type_name("CLASS,..")
-      ->delimiter(',');
-  add_checked(*command, "--points", options->card.points, CLI::Range(4, 10000),
-              "N of the first of three runs; the others have 2N and 4N");
-  add_checked(*command, "--jobs", options->card.threads, CLI::Range(0, 1024),
-              "runs at a time; 0: as many as cores");
-  add_checked(*command, "--time-limit", options->card.time_limit, number_between(1e-3, 1e9),
-              "of each run of a simulator [s]");
-  command
-      ->add_option("--state", options->card.state,
-                   "keep finished runs here; they are not run again")
-      ->type_name("DIR");
-  add_file(*command, "--baseline", options->baseline,
-           "a baseline as that of regress (TOML); exit status 1 if an error is worse");
-  command->add_flag("--update", options->update,
-                    "write the errors of these scenes and simulators into the baseline");
-  add_growth_options(*command, options->tolerance);
-  add_file(*command, "--markdown", options->markdown, "write the cards as Markdown too");
-  add_file(*command, "--junit", options->junit, "and as JUnit XML");
-  add_file(*command, "--report", options->report,
-           "and as a page, FILE.html: verdict, causes, picture and numbers");
-  command
-      ->add_option("--write", options->pack,
-                   "write the answers as a pack: JSON with a schema, and points as CSV and VTU")
-      ->type_name("DIR");
-  add_file(*command, "--battery", options->battery,
-           "a battery of your own (TOML), as data/suite/suite.toml is");
-  add_output_options(*command, options->output, {"text", "json"});
-  command->footer(
-      "Examples:\n"
-      "  dlo suite --with chain --with force --scenes weight,ends --report card.html\n"
-      "  dlo suite --with mine='python3 mine.py {scene} {points} {shape}' --state runs --scenes "
-      "floor\n"
-      "  dlo suite --write answers --scenes floor");
-  command->callback([options] { run(*options); });
+  add_command<SuiteOptions>(app, "suite", run, [](Command& command, SuiteOptions& o) {
+    command.bind("--with", o.simulators, "--scenes", o.scenes, "--points", o.card.points, "--jobs",
+                 o.card.threads, "--time-limit", o.card.time_limit, "--state", o.card.state,
+                 "--baseline", o.baseline, "--update", o.update, "--relative", o.tolerance.relative,
+                 "--absolute", o.tolerance.absolute, "--markdown", o.markdown, "--junit", o.junit,
+                 "--report", o.report, "--write", o.pack, "--battery", o.battery, o.output);
+  });
 }
 
 }  // namespace dlo::cli

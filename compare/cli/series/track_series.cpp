@@ -26,17 +26,7 @@ using compare::TrackErrors;
 using compare::TrackEvent;
 using compare::TrackFrame;
 using compare::TrackOptions;
-using energy_model::ContactKind;
 using energy_model::ContactPart;
-
-std::string part_text(const ContactPart& part) {
-  const std::string kind = energy_model::to_string(part.kind);
-  if (part.kind == ContactKind::lying) {
-    return fmt::format("obstacle {}, {} from s = {:.4g} to {:.4g} m", part.obstacle + 1, kind,
-                       part.begin, part.end);
-  }
-  return fmt::format("obstacle {}, {} at s = {:.4g} m", part.obstacle + 1, kind, part.begin);
-}
 
 /// Returns the contacts in words, such as "1 touching, 2 lying"; "-" if there is none.
 std::string state_text(const TrackFrame& frame, const char* separator) {
@@ -256,13 +246,13 @@ std::string track_text(const compare::TrackResult& found, const compare::Scene& 
   for (std::size_t i = 0; i < listed.size(); ++i) {
     document.json["frames"][i]["touches"] = state_text(track.frames[listed[i]], ", ");
   }
-  for (std::size_t i = 0; i < track.events.size(); ++i) {
-    const std::optional<compare::ContactChange>& contact = track.events[i].contact;
-    document.json["events"][i]["contact"] = contact ? part_text(contact->part) : "-";
+  for (Json& event : document.json["events"]) {
+    if (!event["obstacle"].is_null()) event["obstacle"] = event["obstacle"].get<long>() + 1;
   }
   document.columns = {
       {"events",
-       "time_s,kind,contact,released_J,released_bound_J,smallest_eigenvalue_before,"
+       "time_s,kind,obstacle,contact_kind,from_m,to_m,released_J,released_bound_J,smallest_"
+       "eigenvalue_before,"
        "gripper_1_before_N=grippers/0/force_before_N,gripper_1_after_N=grippers/0/force_after_N"},
       {"frames",
        "time_s,energy_J=energy_J/total,work_J=energy_J/work,gripper_1_N=grippers/0/"

@@ -17,7 +17,6 @@
 #include "format/json.hpp"
 #include "long_call.hpp"
 #include "module.hpp"
-#include "score/card_output.hpp"
 #include "series/study_output.hpp"
 #include "suite/card.hpp"
 
