@@ -22,6 +22,7 @@
 #include "dlo/compare/solve.hpp"
 #include "format/scene_document.hpp"
 #include "reading/read_scene.hpp"
+#include "record/field.hpp"
 
 namespace dlo::compare {
 namespace {
@@ -114,25 +115,7 @@ void add_content(const Json& value, std::string& text) {
   } else if (value.is_structured()) {
     for (const auto& [key, item] : value.items()) add_content(item, text += key + ' ');
   } else {
-    text.add_words("\nbody ");
-    text.add(body.centre());
-    for (Eigen::Index axis = 0; axis < 3; ++axis) text.add(Eigen::Vector3d(body.axes().col(axis)));
-    text.add(body.upper());
-    text.add(body.radius());
-  }
-  text.add(obstacle.stiffness);
-  text.add_positive("friction ", obstacle.friction);
-}
-
-void add_force_model(ContentText& text, const ForceModelSettings& settings) {
-  text.add_words(
-      fmt::format("\n{} {} ", to_string(settings.stepper), to_string(settings.bending_rule)));
-  if (settings.joint_law) {
-    text.add_words(fmt::format("joints {} ", to_string(*settings.joint_law)));
-  }
-  for (const auto& value : {settings.design_curvature, settings.point_weight, settings.c_b,
-                            settings.c_c, settings.c_F, settings.c_h, settings.l_s}) {
-    text.add(value);
+    text += value.dump() + ' ';
   }
 }
 
