@@ -191,7 +191,7 @@ void run_chains(const CalibrateOptions& options, bool format_is_given) {
   }
   if (chains.empty()) {
     throw compare::InputError(
-        "--segments: no scene's rod is like a plain chain of hinges (allowed: one section, "
+        "--segments: a plain chain of hinges represents the rod of no scene (allowed: one section, "
         "intrinsically straight, not twisted, touching nothing)");
   }
   const compare::Document document{

@@ -133,7 +133,7 @@ void write_rows(const SweepOptions& options, const compare::Sweep& sweep,
   if (file) file->finish();
   bar.reset();
   if (without_result > 0) {
-    say("{}: {} of {} scenes have no result, the column status says why",
+    say("{}: {} of {} scenes have no result; the column status states the reason",
         file ? options.output : "sweep", without_result, done);
   }
   plot(options, sweep, drawn);
@@ -155,7 +155,7 @@ void require_drawable(const SweepOptions& options) {
   if (!options.plot.draws()) return;
   if (!options.part.empty()) {
     throw compare::InputError(fmt::format(
-        "--plot: --part {} has a part of the rows (allowed: the whole sweep)", options.part));
+        "--plot: --part {} computes a part of the rows (allowed: all rows)", options.part));
   }
   if (options.vary.size() > 2) {
     throw compare::InputError(

@@ -39,9 +39,9 @@ constexpr double at_rest = 1e-13;  // turn within a step [rad], at the moment of
 btVector3 to_bullet(const Vector& v) { return {v[0], v[1], v[2]}; }
 btQuaternion to_bullet(const Quaternion& q) { return {q[1], q[2], q[3], q[0]}; }
 
-/// No step may be longer than 2 / omega of the fastest motion, in which hinges turn in zigzag: 4 k
-/// / I from their stiffness, which doubles at turns of a right angle, and F h / I from the weight.
-/// Taken: an eighth, as hinges that turn further stiffen more.
+/// Returns the time step [s]: an eighth of the stability limit 2 / omega. omega is the frequency of
+/// the fastest motion, in which hinges rotate in zigzag: omega^2 is 4 k / I from their stiffness,
+/// which doubles at right angles, plus F h / I from the weight. The margin is for larger rotations.
 double time_step(const Chain& chain) {
   const double h = chain.segment.front();
   double stiffness = 0;
@@ -97,7 +97,7 @@ class Simulation {
     }
   }
 
-  /// From the first hinge on.
+  /// Returns the positions of the hinges and of the tip, beginning with the first hinge.
   [[nodiscard]] std::vector<Vector> points() const {
     std::vector<Vector> result = {chain_.first_point};
     for (int i = 0; i < links_; ++i) {

@@ -87,7 +87,8 @@ struct Chain {
   }
 };
 
-/// A scene that such a chain cannot be; its exit status says so to `dlo suite`.
+/// Thrown for a scene that the chain does not support. `dlo suite` recognises it by the exit
+/// status.
 struct NotSupported : std::runtime_error {
   using std::runtime_error::runtime_error;
   static constexpr int exit_status = 3;
@@ -97,7 +98,7 @@ inline void refuse_unless(bool possible, const std::string& why) {
   if (!possible) throw NotSupported(why);
 }
 
-/// Refuses a scene with parts that such a chain does not model.
+/// Throws NotSupported if a scene has properties that the chain does not model.
 inline void check(const nlohmann::json& scene) {
   const nlohmann::json& model = scene.at("force_model");
   const nlohmann::json& rod = scene.at("rod");
@@ -118,8 +119,8 @@ inline void check(const nlohmann::json& scene) {
   }
 }
 
-/// Angle by which the second clamp turns the rod's end about its direction, where the clamps say
-/// one [rad].
+/// Returns the angle by which the second clamp rotates the rod's end about its direction [rad]; 0
+/// for one clamp, or if the clamps hold no frames.
 inline double roll(const nlohmann::json& scene) {
   const nlohmann::json& grippers = scene.at("grippers");
   if (grippers.size() < 2) return 0;

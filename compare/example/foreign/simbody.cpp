@@ -76,8 +76,8 @@ class Forces : public SimTK::Force::Custom::Implementation {
   const std::vector<MobilizedBody>& bodies_;
 };
 
-/// As far down as rounding lets the minimiser come, which throws where a tolerance is too small for
-/// it. The energy's gradient is in N m.
+/// Minimises the energy to the smallest tolerance of its gradient [N m] that rounding allows; the
+/// minimiser throws if a tolerance is too small.
 State at_rest(const SimTK::MultibodySystem& system, const State& start) {
   for (Real tolerance = 1e-9;; tolerance *= 10) {
     State state = start;
@@ -90,7 +90,7 @@ State at_rest(const SimTK::MultibodySystem& system, const State& start) {
   }
 }
 
-/// From the first hinge on.
+/// Returns the positions of the hinges and of the tip at rest, beginning with the first hinge.
 std::vector<foreign::Vector> solve(const Chain& chain) {
   SimTK::MultibodySystem system;
   SimTK::SimbodyMatterSubsystem matter(system);

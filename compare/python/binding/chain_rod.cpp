@@ -59,7 +59,7 @@ ChainRod chain_rod(const SceneData& data, const std::optional<Eigen::Matrix3Xd>&
   }
   if (points) {
     if (points->cols() != start.points.cols()) {
-      throw InputError(fmt::format("points: {} of them (allowed: {}, as force_model.points says)",
+      throw InputError(fmt::format("points: {} points (allowed: {}, force_model.points)",
                                    points->cols(), start.points.cols()));
     }
     start.points = *points;

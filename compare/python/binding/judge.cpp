@@ -60,7 +60,7 @@ struct Comparison : Result {
 
 constexpr const char* deviation_words = "All deviations by name, in the names' units.";
 constexpr const char* modulus_words =
-    "E*/E at which the energy model comes nearest; NaN without one.";
+    "E*/E at which the energy model is nearest to the shape; NaN if there is none.";
 
 template <typename Compared>
 NumberDict deviations(const Compared& compared) {

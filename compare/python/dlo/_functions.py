@@ -229,7 +229,7 @@ def calibrate(
     data = [data_of(scene, materials, time, calibrated) for scene in many(scenes)]
     if motion is not None:
         if shapes is not None or len(data) != 1:
-            raise InputError("calibrate: motion with shapes or of several scenes (allowed: one scene)")
+            raise InputError("calibrate: motion with shapes or several scenes (allowed: motion with one scene)")
         return MotionFit(*_dlo.calibrate_motion(data[0], _recorded(motion), "motion", limits))
     if shapes is None:
         held_out = [data_of(cast(SceneLike, scene), materials, time, calibrated) for scene in holdout]

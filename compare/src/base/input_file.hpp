@@ -14,7 +14,8 @@ class InputFile {
   /// Largest file that is read [bytes]. Scenes, shapes and baselines of users are far smaller.
   static constexpr std::size_t largest_file = std::size_t{1} << 26;
 
-  /// @throws InputError that names the file and the reason if it cannot be opened
+  /// @throws InputError that names the file and the reason if it cannot be opened or is an output
+  /// of the command
   explicit InputFile(std::string path);
   /// Takes over an open file. @param name  for messages
   InputFile(int descriptor, std::string name);

@@ -355,7 +355,7 @@ std::vector<RegressionResult> judge_regression(const std::vector<BaselineCase>& 
     const std::string name = measurement.entry.name();
     if (!seen.insert(name).second) {
       throw InputError(fmt::format(
-          "{}: two scenes are this case (allowed: a name of its own for each scene)", name));
+          "{}: two scenes have this case (allowed: a different name for each scene)", name));
     }
     const auto known = expected.find(name);
     judge_case(results[name], measurement, known == expected.end() ? nullptr : known->second,

@@ -242,7 +242,7 @@ class Search {
     const bool left_plane = normal && out > another_shape_out * scene_.length &&
                             out_of_plane(*normal, check_.alignment.shape.points) < same_share * out;
     add({left_plane
-             ? fmt::format("the rod keeps to the scene's plane, as a planar model's does: it "
+             ? fmt::format("the file stays in the scene's plane, as a planar model does: the rod "
                            "is unstable there and leaves the plane by up to {:.3g} mm",
                            out * 1e3)
              : std::string("the rod rests at an unstable equilibrium, as found by a solver that "

@@ -92,8 +92,8 @@ Eigen::VectorXd shares_of(const Scene& scene, const std::vector<double>& lengths
   constexpr double tolerance = 0.05;
   if (!(std::abs(sum / scene.length - 1) <= tolerance)) {
     throw InputError(
-        fmt::format("{}: a chain {:.6g} m long, the rod is {:.6g} m long (allowed: the same within "
-                    "{:g} %, which is scaled away)",
+        fmt::format("{}: a chain {:.6g} m long, but the rod is {:.6g} m long (allowed: equal "
+                    "within {:g} %, the chain is then scaled)",
                     scene.file, sum, scene.length, 100 * tolerance));
   }
   return Eigen::Map<const Eigen::VectorXd>(lengths.data(),

@@ -309,11 +309,11 @@ MaterialProfiles::MaterialProfiles(const std::vector<Scene>& scenes,
       high_(forced_ ? std::log(options.largest_ratio) : 0) {
   const int fewest = options.noise ? 0 : 1;
   if (freedom() >= fewest) return;
-  throw InputError(fmt::format(
-      "calibrate: {} numbers measured beside the frames, {} to be found (allowed: {} or more, so "
-      "more points{})",
-      measured_.numbers(), unknowns(), unknowns() + fewest,
-      options.noise ? "" : ", or a given noise"));
+  throw InputError(
+      fmt::format("calibrate: {} measured numbers in addition to the frames for {} unknown "
+                  "parameters (allowed: {} or more, so more points{})",
+                  measured_.numbers(), unknowns(), unknowns() + fewest,
+                  options.noise ? "" : ", or a given noise"));
 }
 
 /// Returns the best logarithm of the density at an E, and the sum of squares there.
@@ -335,7 +335,7 @@ MaterialProfiles::Search MaterialProfiles::profile() {
 
 MaterialProfiles::Search MaterialProfiles::search() {
   Search found = profile();
-  for (int i = 0; i < most_other_states && misfit_.search_at(found.best); ++i) found = profile();
+  for (int i = 0; i < most_other_states && misfit_.find_nearer(found.best); ++i) found = profile();
   if (!std::isfinite(found.over_modulus.minimum().value)) {
     throw ConvergenceError(
         fmt::format("{}: the energy model found no equilibrium at any of the moduli tried",

@@ -201,7 +201,7 @@ EffectiveModulus search(FollowedState& mean_square, double resolution) {
     return at < values.value.size() && std::isfinite(values.value[at]);
   };
   if (!known(best + 1) && !(best > 0 && known(best - 1))) {
-    return no_modulus("the equilibrium is lost at the moduli beside the scene's");
+    return no_modulus("the equilibrium is lost at moduli near the scene's");
   }
   double largest = 0;
   for (const double value : values.value) {

@@ -166,8 +166,8 @@ void GaussNewton::measure_variance() {
   freedom_ = static_cast<double>(linear_.freedom - before_.size()) + kept.sum();
   if (!(freedom_ >= 1)) {
     throw InputError(
-        fmt::format("calibrate: {} numbers measured beside the frames, {} to be found (allowed: "
-                    "more measured than found, so more points, or a given noise)",
+        fmt::format("calibrate: {} measured numbers in addition to the frames for {} unknown "
+                    "parameters (allowed: more measured numbers, so more points, or a given noise)",
                     linear_.freedom, before_.size()));
   }
   variance_ = std::max(floor, squares / freedom_);

@@ -168,8 +168,8 @@ class ChainFinder {
     }
     if (farthest == segment.begin) {
       fail(segment,
-           "is the last one, and no geom says where it ends (allowed: a capsule, cylinder or box "
-           "from its joint to its end)");
+           "is the last one, and no geom defines its end (allowed: a capsule, cylinder or box from "
+           "its joint to its end)");
     }
     return farthest;
   }
@@ -226,7 +226,7 @@ class ChainFinder {
     const std::optional<MjcfPlugin>& plugin = plugin_of(chain_.segments.back());
     if (chain_.is_curved && plugin && plugin->flat) {
       chain_.is_curved = false;
-      chain_.notes.emplace_back("the cable is straight where it is free of stress (flat)");
+      chain_.notes.emplace_back("the stress-free cable is straight (flat)");
     }
   }
 

@@ -25,7 +25,7 @@ std::set<std::string> excluded(const XmlFile& xml, const MjcfWorld& world, const
     for (const pugi::xml_node& part : contact.children()) {
       if (part.type() != pugi::node_element) continue;
       if (std::string_view(part.name()) != "exclude") {
-        xml.fail(part, "in <contact> cannot be said by a rod's scene (allowed: exclude)");
+        xml.fail(part, "in <contact> has no counterpart in a rod's scene (allowed: exclude)");
       }
       const std::string first = part.attribute("body1").value();
       const std::string second = part.attribute("body2").value();

@@ -138,8 +138,8 @@ struct LeastSquares {
                                                         const RodDamping& damping,
                                                         const SolveOptions& solve);
 
-/// Returns the start that Scene::start defines: a shape at rest, or recorded_start(); std::nullopt
-/// if the scene has none.
+/// Returns the start that Scene::start defines: recorded_start() of a recording, or a shape with
+/// zero velocities; std::nullopt if the scene has no start.
 /// @param begin  time at which the rod starts [s]
 /// @throws InputError if the start has too few points
 [[nodiscard]] std::optional<MotionStart> given_start(const Scene& scene, double begin,

@@ -194,17 +194,17 @@ SceneModes scene_modes(const Scene& scene, const ModeOptions& options) {
     const energy_model::Problem problem = scene_problem(scene);
     if (energy_model::is_held_straight(problem)) {
       if (scene.weight_between(0, scene.length).norm() > 0 || !scene.distributed_loads.empty()) {
-        throw InputError(fmt::format(
-            "{}: the grippers hold the rod straight, which its weight or load would pull "
-            "endlessly (allowed: some slack, or gravity = [0, 0, 0])",
-            scene.file));
+        throw InputError(
+            fmt::format("{}: the grippers hold the rod straight, so that its weight or load would "
+                        "cause an infinite tension (allowed: some slack, or gravity = [0, 0, 0])",
+                        scene.file));
       }
       result.tension = options.tension.value_or(0);
       found = energy_model::taut_vibrations(problem, scene_inertia(scene), *result.tension, own);
     } else if (options.tension) {
       throw InputError(
-          fmt::format("{}: tension = {:g} N: the rod's shape determines its tension "
-                      "(allowed: of one that clamps hold straight)",
+          fmt::format("{}: tension = {:g} N: the rod's shape determines its tension (allowed: only "
+                      "for a rod that clamps hold straight)",
                       scene.file, *options.tension));
     } else {
       const energy_model::Equilibrium shape = solve_reference(scene, Model::energy, options.solve);

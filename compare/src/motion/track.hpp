@@ -77,7 +77,7 @@ struct TrackEvent {
 /// Names of the kinds of events in files.
 template <>
 struct Choices<TrackEvent::Kind> {
-  /// In the enumeration's order.
+  /// All values, in the order of the enumeration.
   static constexpr Choice<TrackEvent::Kind> all[] = {{TrackEvent::Kind::contact, "contact", ""},
                                                      {TrackEvent::Kind::release, "release", ""},
                                                      {TrackEvent::Kind::snap, "snap", ""},

@@ -201,11 +201,11 @@ std::vector<std::string> findings(const MovingReport& report) {
                   40 * weight, 10 * weight),
       "Four numbers (unit, angle, distance, c_h) were chosen by hand to meet the seven average "
       "forces of Tables 2 and 4. That is agreement, not proof.",
-      "The counters are not reproduced. A rod that starts in its place in the gripper never "
-      "reaches l_s. In print 963 and 1081 stand for a hanging rod whether it is turned or moved "
-      "(Tables 2 and 4, 963 in Table 3 too), so they were counted before the movement began: that "
-      "rod was pulled into its gripper at the start. One that starts a segment behind repeats its "
-      "counts in the same way, though they are smaller; from further behind, points pass each "
+      "The counters are not reproduced. A rod that starts within the gripper never reaches l_s. "
+      "The paper prints 963 and 1081 for a hanging rod, whether it is rotated or displaced (Tables "
+      "2 and 4, and 963 in Table 3). They were therefore counted before the movement began, while "
+      "the rod was pulled into its gripper. A rod that starts one segment behind also has the same "
+      "counts in both movements, but smaller ones. If it starts farther behind, points pass each "
       "other (Fig. 4) and the counts depend on rounding.",
       "Table 3 is not reproduced by any distance: each of its rows asks for another one. It "
       "repeats Table 4's 112878 and 963 for the hanging rod, yet prints another force.",

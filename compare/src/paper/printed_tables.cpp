@@ -85,8 +85,8 @@ void add_table_1(std::vector<TableRow>& rows) {
   const double force = 0.8 * mass * gravity;
   const double angle = 2.5 * std::numbers::pi / 180;
   rows.push_back(table.row("c_c", "c_c", "N", 5, force_model::contraction_stiffness(force, 5),
-                           "Formula 11 with F = 0.8 m g = 0.07848 N at 5 %; the remark's 0.981 N "
-                           "gives 19.62, m g 1.962"));
+                           "Formula 11 with F = 0.8 m g = 0.07848 N at 5 %; F = 0.981 N of the "
+                           "remark gives 19.62 N, F = m g gives 1.962 N"));
   rows.push_back(table.row(
       "c_b", "c_b", "N", 5, force_model::bending_stiffness(force, angle, Formula13::table_1),
       fmt::format(
@@ -99,10 +99,10 @@ void add_table_1(std::vector<TableRow>& rows) {
   rows.push_back(table.row(
       "c_F", "c_F", "m/N", 5, table_1_step_share * (length / points) / (2 * table_1().c_c),
       "no formula in the paper; 0.86 of the largest stable step L/(2 c_c) with L = l/N, "
-      "and 0.78 of it with L = l/(N-1); Tables 2 and 4 ask for cm/N instead"));
+      "and 0.78 of it with L = l/(N-1); Tables 2 and 4 require cm/N instead"));
   rows.push_back(
       table.row("l_s", "l_s", "m", 5, table_1_limit_share * length / points,
-                "no formula in the paper; 0.6 of l/N; Tables 2 and 4 ask for cm instead"));
+                "no formula in the paper; 0.6 of l/N; Tables 2 and 4 require cm instead"));
 }
 
 void add_table_5(std::vector<TableRow>& rows) {

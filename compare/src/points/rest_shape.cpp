@@ -451,8 +451,8 @@ double place_along(const MeasuredShape& given, const std::vector<Index>& chosen,
   }
   if (!(std::abs(curve / target.length - 1) <= length_tolerance)) {
     throw InputError(
-        fmt::format("{}: a curve {:.6g} m long, the rod is {:.6g} m long (allowed: the same within "
-                    "{:g} %, which is scaled away)",
+        fmt::format("{}: a curve {:.6g} m long, but the rod is {:.6g} m long (allowed: equal "
+                    "within {:g} %, the curve is then scaled)",
                     given.file, curve, target.length, 100 * length_tolerance));
   }
   for (double& s : target.s) s *= target.length / curve;

@@ -177,8 +177,8 @@ void require_directors(const RawShape& raw, const std::string& file) {
     const double off = std::abs(angle(d1, tangent) - right_angle);
     if (off <= most) continue;
     throw InputError(
-        fmt::format("{}: d1 is {:.3g} degrees away from across the rod (allowed: up to "
-                    "{:.3g}, 5 and what the rod bends by there)",
+        fmt::format("{}: d1 is {:.3g} degrees off the cross-section (allowed: up to {:.3g}, 5 plus "
+                    "the bend of the rod there)",
                     where_point(raw, file, i), off / right_angle * 90, most / right_angle * 90));
   }
 }

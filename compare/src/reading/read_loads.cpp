@@ -87,7 +87,7 @@ void read_medium(StrictTable& table, Scene& scene) {
   if (scene.drag && scene.drag->largest() > 0 && !scene.obstacles.empty()) {
     table.fail(
         "velocity",
-        "beside obstacles, with which no model takes drag (allowed: neither, or no velocity)");
+        "no model supports drag together with obstacles (allowed: one of the two, or no velocity)");
   }
   table.finish();
   scene.distributed_loads.push_back({0, scene.length, {-density * section * scene.gravity}});

@@ -55,12 +55,12 @@ std::span<const Field<SolvedShape>> solution_fields() {
        in_json},
       {"energy", "J", "Energies: bending, twisting, gravity, load, stretch, contact, total",
        [](S s) { return numbers_of(energy_fields(), s.solution.energy); }, document},
-      {"grippers", "", "What each gripper exerts on the rod", grippers_json, in_json},
+      {"grippers", "", "Force and torque of each gripper on the rod", grippers_json, in_json},
       {"message", "", "How the solver ended", [](S s) { return s.solution.message; }, document,
        "solver/message"},
-      {"evaluations", "", "Of the minimiser, or shots of exact",
+      {"evaluations", "", "Evaluations of the minimiser, or shots of exact",
        [](S s) { return s.solution.evaluations; }, document, "solver/evaluations"},
-      {"steps", "", "Of the force model", [](S s) { return s.solution.steps; }, document,
+      {"steps", "", "Steps of the force model", [](S s) { return s.solution.steps; }, document,
        "solver/steps"},
       {"terms", "", "Curvature coefficients of the energy model",
        [](S s) -> long { return s.solution.terms; }, document, "solver/terms"},
@@ -78,19 +78,19 @@ std::span<const Field<SolvedShape>> solution_fields() {
        [](S s) { return is_stable(s.solution); }, in_python},
       {"error_estimate", "m", "Estimated largest error of the points; none: not known",
        [](S s) { return s.solution.error_estimate; }, document},
-      {"neglected", "", "What the scene has and the model neglects",
+      {"neglected", "", "Properties of the scene that the model neglects",
        [](S s) { return s.solution.neglected; }, in_python},
       {"stretch_strain", "",
        "Largest axial strain N/EA of a shape that is solved without; none: EA is not known, or it "
        "is too small to matter",
        [](S s) { return s.solution.stretch.strain; }, document},
-      {"stretch_moves", "m", "By which stretch would move the points, RMS, to first order",
+      {"stretch_moves", "m", "RMS displacement of the points by stretch, to first order",
        [](S s) { return s.solution.stretch.moved_m; }, document},
-      {"stretch_tension_change", "", "The same of the largest tension, over it",
+      {"stretch_tension_change", "", "Relative change of the largest tension by stretch",
        [](S s) { return s.solution.stretch.tension; }, document},
       {"stretch_decision", "",
-       "Of a rod with stretch = \"auto\": \"counted\", \"below_target\" or \"not_modelled\"; of "
-       "others \"given\"",
+       "Decision on stretch = \"auto\": \"counted\", \"below_target\" or \"not_modelled\"; for "
+       "other rods \"given\"",
        [](S s) -> std::string { return to_string(s.solution.stretch_decision); }, document}};
   return fields;
 }
@@ -101,9 +101,9 @@ std::span<const Field<SolvedShape>> shape_numbers() {
       {"link", "turns", "Turns of the rod's frames: twist and writhe",
        [](S s) { return turns(s, &Linking::twist) + turns(s, &Linking::writhe); }, everywhere, "",
        holds_twist},
-      {"twist", "turns", "Of them, twist of the rod about its axis",
+      {"twist", "turns", "Twist of the rod about its axis, a part of the link",
        [](S s) { return turns(s, &Linking::twist); }, everywhere, "", holds_twist},
-      {"writhe", "turns", "Of them, writhe of the axis",
+      {"writhe", "turns", "Writhe of the axis, a part of the link",
        [](S s) { return turns(s, &Linking::writhe); }, everywhere, "", holds_twist}};
   return fields;
 }
@@ -111,13 +111,13 @@ std::span<const Field<SolvedShape>> shape_numbers() {
 std::span<const Field<SceneEnergies>> energy_fields() {
   using E = const SceneEnergies&;
   static const Field<SceneEnergies> fields[] = {
-      {"bending", "", "Of the joints or the curvature", [](E e) { return e.bending; }},
-      {"twisting", "", "Where clamps hold frames", [](E e) { return e.twisting; }},
-      {"gravity", "", "Of the rod's weight", [](E e) { return e.gravity; }},
-      {"load", "", "Of loads, at points and per length", [](E e) { return e.load; }},
-      {"stretch", "", "Of a rod or of segments that stretch", [](E e) { return e.stretch; }},
-      {"contact", "", "Of obstacles that yield", [](E e) { return e.contact; }},
-      {"total", "", "Of all", [](E e) { return e.total(); }}};
+      {"bending", "", "Bending energy of joints or curvature", [](E e) { return e.bending; }},
+      {"twisting", "", "Twisting energy between held frames", [](E e) { return e.twisting; }},
+      {"gravity", "", "Potential of the rod's weight", [](E e) { return e.gravity; }},
+      {"load", "", "Potential of loads, at points and per length", [](E e) { return e.load; }},
+      {"stretch", "", "Stretching energy of the rod or of segments", [](E e) { return e.stretch; }},
+      {"contact", "", "Energy of obstacles that yield", [](E e) { return e.contact; }},
+      {"total", "", "Sum of all energies", [](E e) { return e.total(); }}};
   return fields;
 }
 
@@ -130,7 +130,7 @@ std::span<const Field<Deviation>> deviation_fields() {
       {"tip", "m", "Distance at the free end; NaN without one", [](D d) { return d.tip_m; }},
       {"rms_over_length", "", "RMS distance over the rod's length",
        [](D d) { return d.rms_over_length; }},
-      {"rms_over_movement", "", "The same over its RMS way from straight; NaN without one",
+      {"rms_over_movement", "", "RMS distance over RMS displacement from straight; NaN without one",
        [](D d) { return d.rms_over_movement; }},
       {"angle_rms", "rad", "RMS angle between the tangents", [](D d) { return d.angle_rms_rad; }},
       {"curvature_rms", "per_m", "RMS difference of the curvatures",

@@ -36,7 +36,7 @@ enum class MotionModel {
 /// Names of the models in files.
 template <>
 struct Choices<MotionModel> {
-  /// In the enumeration's order.
+  /// All values, in the order of the enumeration.
   static constexpr Choice<MotionModel> all[] = {{MotionModel::at_rest, "at_rest", ""},
                                                 {MotionModel::with_inertia, "with_inertia", ""}};
 };
@@ -73,7 +73,7 @@ struct MotionCause {
 /// Names of the kinds of causes in files.
 template <>
 struct Choices<MotionCause::Kind> {
-  /// In the enumeration's order.
+  /// All values, in the order of the enumeration.
   static constexpr Choice<MotionCause::Kind> all[] = {
       {MotionCause::Kind::lag, "lag", ""},
       {MotionCause::Kind::offset, "offset", ""},

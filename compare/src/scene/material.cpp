@@ -46,7 +46,7 @@ double add_tube(const Layer& layer, LayeredSection& sum) {
   const double outer = layer.outer_diameter;
   if (!(outer > inner)) {
     throw InputError(
-        fmt::format("outer_diameter = {:g} m, what is within it is {:g} m thick (allowed: more)",
+        fmt::format("outer_diameter = {:g} m, the layers inside are {:g} m thick (allowed: more)",
                     outer, inner));
   }
   const double I = std::numbers::pi / 64 * (std::pow(outer, 4) - std::pow(inner, 4));

@@ -150,8 +150,8 @@ Eigen::Matrix3d Scene::first_frame() const {
   const std::optional<std::size_t> clamp = first_clamp_of(*this);
   if (!clamp) {
     throw InputError(fmt::format(
-        "{}: rod.{}: no gripper says about which axis (allowed: a gripper with hold = \"clamp\")",
-        file, key));
+        "{}: rod.{}: no gripper defines its axis (allowed: a gripper with hold = \"clamp\")", file,
+        key));
   }
   const energy_model::Problem problem = scene_problem(*this);
   const Gripper& gripper = grippers[*clamp];

@@ -298,7 +298,7 @@ double Plan::bound(const std::string& what) const {
   for (const Neglected& item : neglected) {
     if (item.what == what) return item.bound_m;
   }
-  throw std::invalid_argument(fmt::format("Plan::bound: nothing called \"{}\" is neglected", what));
+  throw std::invalid_argument(fmt::format("Plan::bound: no neglected effect \"{}\"", what));
 }
 
 Plan make_plan(const Scene& scene, const PlanOptions& options) {

@@ -57,11 +57,11 @@ struct StabilityMap {
 /// are stable (the condition of the paper's Formula 15), predicted by linear stability and measured
 /// by simulation.
 ///
-/// Every rod starts at its rest shape, disturbed in space by 1e-6 of its length (RMS, the same
-/// disturbance for all). Rods are stepped in vectorised batches of eight, on as many threads as
-/// allowed. A rod is stable if the disturbance has grown by less than a factor of a hundred at
-/// every sample. `measured` is then refined by bisection between the last stable and the first
-/// unstable c_F of the grid.
+/// Every rod starts at its rest shape, disturbed by 1e-6 of its length (RMS, the same disturbance
+/// for all; in space, or in its plane if its joints have natural angles). Rods are stepped in
+/// vectorised batches of eight, on as many threads as allowed. A rod is stable if the disturbance
+/// has grown by less than a factor of a hundred at every sample. `measured` is then refined by
+/// bisection between the last stable and the first unstable c_F of the grid.
 ///
 /// c_c ranges from EI/L^2, where bending is stiffer than contraction, to AE at c_h = 0; c_h ranges
 /// from 0 to 0.99 at the scene's c_c. c_F ranges from a quarter of the smallest predicted limit to

@@ -46,13 +46,14 @@ constexpr double may_be_left = 0.1;
 /// Largest fraction of the error that the scene without one of its properties may leave. It is
 /// small because a shape that has hardly moved is also close to that scene's.
 constexpr double may_be_left_without = 0.03;
-/// Largest such fraction for shapes that converge to the scene without the property.
+/// Largest fraction of the error that the scene without a property may leave if the shapes converge
+/// to that scene.
 constexpr double may_be_left_of_way = 0.3;
 /// Largest fraction of the error that a cause with a fitted number may leave. It is small because
 /// any fitted number reduces the error.
 constexpr double may_be_left_fitted = 0.02;
-/// Largest such fraction for the second finest shape, if the finest one satisfies the smaller
-/// limit. The rest is discretisation error.
+/// Largest fraction of the error that a fitted cause may leave for the second finest shape, if the
+/// finest one satisfies may_be_left_fitted. The rest is discretisation error.
 constexpr double may_be_left_coarse = 0.3;
 /// Largest fraction of the error that a cause may leave if the shape is out of balance.
 constexpr double nothing_left = 2e-3;

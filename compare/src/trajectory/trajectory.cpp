@@ -43,8 +43,8 @@ Trajectory::Trajectory(std::vector<Pose> poses) : poses_(std::move(poses)) {
     const Pose& last = poses_[i - 1];
     require(pose.time > last.time, i, "time is not above that of the pose before");
     require(!pose.direction || (*pose.direction + *last.direction).norm() > opposite, i,
-            "direction is opposite to that of the pose before, which leaves the way to turn open "
-            "(allowed: a pose between them)");
+            "direction is opposite to that of the pose before, so that the rotation is "
+            "undetermined (allowed: a pose between them)");
   }
 }
 

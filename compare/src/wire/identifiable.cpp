@@ -22,7 +22,7 @@ bool is_forced(const Scene& scene) {
   return scene.weight_per_length().norm() > 0 || has_forces_beside_weight(scene);
 }
 
-std::string why_unforced(const Scene& scene) {
+std::string why_stiffness_not_identifiable(const Scene& scene) {
   return fmt::format(
       "{0} is not identifiable from these shapes: neither weight nor a load or yielding obstacle "
       "acts on the rod, so its shapes are the same with any {0} (a known load would identify it)",

@@ -14,13 +14,13 @@ namespace dlo::compare {
 /// the same equilibria for every E.
 [[nodiscard]] bool is_forced(const Scene& scene);
 
-/// Whether such a force other than weight acts. Without one, the scene has the same equilibria for
-/// every E at a fixed ratio of density and E.
+/// Whether a load or a yielding obstacle acts on the rod. Otherwise the scene has the same
+/// equilibria for every E at a fixed ratio of density and E.
 [[nodiscard]] bool has_forces_beside_weight(const Scene& scene);
 
-/// Returns a message that states what is not identifiable from shapes of scenes that are not
-/// is_forced().
-[[nodiscard]] std::string why_unforced(const Scene& scene);
+/// Returns a message that states why the stiffness is not identifiable from shapes of a scene that
+/// is not is_forced().
+[[nodiscard]] std::string why_stiffness_not_identifiable(const Scene& scene);
 
 /// Returns half the width of a 95 % interval in standard deviations: of the normal distribution if
 /// the noise is given, otherwise of Student's t distribution.

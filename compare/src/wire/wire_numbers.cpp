@@ -88,9 +88,9 @@ void add_natural_curvature(std::vector<WireNumber>& numbers, const std::vector<S
 void add_torsion(std::vector<WireNumber>& numbers, const std::vector<Scene>& scenes) {
   if (std::none_of(scenes.begin(), scenes.end(), twists)) {
     throw InputError(
-        fmt::format("{}: torsional stiffness is in no shape of this scene (allowed: two clamps "
-                    "that hold the rod's frame, roll or frame, or an intrinsically curved rod that "
-                    "leaves its plane)",
+        fmt::format("{}: no shape of this scene depends on the torsional stiffness (allowed: two "
+                    "clamps that hold the rod's frame, roll or frame, or an intrinsically curved "
+                    "rod that leaves its plane)",
                     scenes.front().file));
   }
   numbers.push_back(
@@ -219,10 +219,10 @@ void require_like_clamps(const std::vector<Scene>& scenes) {
                      return a.at == b.at && a.direction.has_value() == b.direction.has_value();
                    });
     if (alike) continue;
-    throw InputError(fmt::format(
-        "{}: its grippers are not those of {}, so they are not misaligned alike (allowed: as many "
-        "grippers, at the same arc lengths, clamps or pins)",
-        scene.file, scenes.front().file));
+    throw InputError(
+        fmt::format("{}: its grippers differ from those of {}, so they cannot share misalignments "
+                    "(allowed: as many grippers, at the same arc lengths, clamps or pins)",
+                    scene.file, scenes.front().file));
   }
 }
 
@@ -245,8 +245,8 @@ std::string why_no_camera_tilt(const std::vector<Scene>& scenes,
                               (!normal || normal->cross(*other).norm() < parallel);
     if (!in_one_plane || !scenes[i].gravity.isApprox(first.gravity, parallel)) {
       return fmt::format(
-          "{}: not the plane or gravity of {}, so one camera's tilt is not that of both (allowed: "
-          "shapes in one plane, or all in space, under one gravity)",
+          "{}: its plane or gravity differs from that of {}, so one camera tilt cannot apply to "
+          "both (allowed: shapes in one plane, or all in space, under one gravity)",
           scenes[i].file, first.file);
     }
   }
@@ -314,9 +314,9 @@ std::vector<WireNumber> wire_numbers(const std::vector<Scene>& scenes,
     }
     if (numbers.size() == others) {
       throw InputError(
-          fmt::format("{}: how clamps hold the rod about its tangent is in no shape of this scene "
-                      "(allowed: two clamps that hold the rod's frame, roll or frame, or natural "
-                      "curvature of a rod in space)",
+          fmt::format("{}: no shape of this scene depends on the clamps' rotation about the "
+                      "tangent (allowed: two clamps that hold the rod's frame, roll or frame, or "
+                      "natural curvature of a rod in space)",
                       scenes.front().file));
     }
   }

@@ -124,7 +124,7 @@ class WireIntervals {
   [[nodiscard]] std::string why_not_identified(const FittedValue& E) const {
     const NamedValue stiffness = scene_.stiffness();
     if (std::none_of(problem_.scenes.begin(), problem_.scenes.end(), is_forced)) {
-      return why_unforced(scene_);
+      return why_stiffness_not_identifiable(scene_);
     }
     if (optimum_.is_unseen(0)) {
       return fmt::format(

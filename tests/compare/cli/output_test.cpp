@@ -190,7 +190,7 @@ TEST_F(Output, AnInputIsNeverWrittenOver) {
   succeeds("regress " + scene + " --update --baseline " + path("base.toml"));
 }
 
-TEST_F(Output, IsNoFileThatAFieldNames) {
+TEST_F(Output, CannotBeAFileThatAFieldNames) {
   const std::string points = "x,y,z\n0,0,0\n0.06,0,0\n0.12,0,0\n0.18,0,0\n0.24,0,0\n0.3,0,0\n";
   for (const char* name : {"a.csv", "b.csv", "frames.npy"}) write(name, points);
   const auto scene = [&](const std::string& file) {

@@ -161,7 +161,7 @@ TEST_F(RegressCommand, WhatIsNotSolvedIsStatusThreeAndUpdatesNothing) {
 
 TEST_F(RegressCommand, BadInputIsOneLineAndStatusTwo) {
   expect_error(arguments_ + path("none.toml"), 2, {"none.toml"});
-  expect_error(arguments_ + steel() + " " + steel(), 2, {"two scenes are this case"});
+  expect_error(arguments_ + steel() + " " + steel(), 2, {"two scenes have this case"});
   expect_error(arguments_ + steel() + " --relative -1", 2, {"--relative"});
   expect_error("regress " + steel(), 2, {"--baseline"});
   set("rms_over_length", "-1");

@@ -219,7 +219,7 @@ TEST(Explanation, NamesAPinThatIsAClampAndTheReverse) {
   expect_named("a clamp lets go", held(level, pin), right_file(held(pin, pin)),
                {"gripper 1 lets the rod rotate: a pin, not a clamp"}, 1e-5);
   expect_named("both let go", held(level, up), right_file(held(pin, pin)),
-               {"the clamps let the rod rotate: pins"}, 1e-5);
+               {"the clamps let the rod rotate: pins, not clamps"}, 1e-5);
 }
 
 TEST(Explanation, NoCauseIsListedTwice) {
@@ -262,7 +262,7 @@ TEST(Explanation, PlanarPointsOfARodThatHasLeftItsPlaneAreToldAsSuch) {
     if (!planar && stands && !energy_model::succeeded(state.status)) planar = made(points);
   }
   ASSERT_TRUE(planar);
-  expect_named("planar", scene, *planar, {"keeps to the scene's plane", "unstable"}, 1e-6);
+  expect_named("planar", scene, *planar, {"stays in the scene's plane", "unstable"}, 1e-6);
   const ShapeCheck check = check_shape(scene, *planar);
   EXPECT_TRUE(check.effective_modulus.at_bifurcation);
   EXPECT_EQ(check.effective_modulus.optimum, Optimum::one_sided);
@@ -282,9 +282,9 @@ TEST(Explanation, PlanarPointsOfARodThatHasLeftItsPlaneAreToldAsSuch) {
   EXPECT_NEAR(other.effective_modulus.ratio, 1.5, 1e-3);
 }
 
-// E* of a rod that was turned in its clamp explains a part of it, and is no measure of the
-// material.
-TEST(Explanation, AnotherReasonThatLeavesLessOutdoesTheStiffness) {
+// E* of a rod that was rotated in its clamp explains a part of the deviation, and is no measure of
+// the material.
+TEST(Explanation, ACauseThatLeavesLessSupersedesTheStiffness) {
   const Scene scene = clamped();
   const auto better = [&scene](const std::function<void(Scene&)>& change) {
     Scene changed = scene;

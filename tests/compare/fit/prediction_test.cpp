@@ -219,7 +219,7 @@ TEST(Prediction, RefusesWhatItCannotDo) {
   Hangings other = seen;
   other.scenes[2].grippers[0].at = 0.1;
   EXPECT_TRUE(says(refused(other, {.direction_tolerance = 0.1, .shared_clamps = true}),
-                   {"its grippers are not those of heavy.toml"}));
+                   {"its grippers differ from those of heavy.toml"}));
 }
 
 }  // namespace

@@ -10,8 +10,8 @@ namespace {
 
 constexpr double missed_step = 1.0 / 512;
 
-/// Whether two shapes show the end of the branch: the later one at a fraction of the missed step
-/// before the end, the other one `way` earlier.
+/// Whether two shapes show the end of the branch. The later shape is at a fraction `share` of the
+/// missed step before the end, and the earlier one precedes it by `way`.
 bool shows(const std::function<BranchWitness(double)>& shape_before_end, double way, double share) {
   BranchWitness last = shape_before_end(share * missed_step);
   BranchWitness before = shape_before_end(share * missed_step + way);

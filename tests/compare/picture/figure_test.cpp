@@ -22,7 +22,7 @@ using testing::AllOf;
 using testing::HasSubstr;
 using testing::Not;
 
-/// A curve of a figure; an empty one if it has none of that name.
+/// Returns the curve of a figure with a name; an empty curve if there is none.
 PlottedCurve curve_of(const Figure& figure, const std::string& id) {
   for (const Panel& panel : figure.panels) {
     for (const PlottedCurve& curve : panel.curves) {

@@ -171,7 +171,7 @@ TEST(RestShape, SaysWhatIsWrong) {
   expect("rest_shape = \"none.csv\"\n", "no such file beside the scene");
   expect("rest_shape = [[0, 0, 0], [0.5, 0, 0]]\n", "2 points (allowed: 5 or more");
   expect("rest_shape = [[0,0,0], [0.1,0,0], [0.2,0,0], [0.3,0,0], [0.4,0,0]]\n",
-         "a curve 0.4 m long, the rod is 1 m long");
+         "a curve 0.4 m long, but the rod is 1 m long");
   expect("helix = { radius = 0.1, pitch = 0.1 }\nnatural_twist = 1\n",
          "given besides natural_twist");
   expect("rest_shape = \"a.csv\"\nhelix = { radius = 0.1, pitch = 0.1 }\n", "given besides helix");
@@ -350,7 +350,7 @@ TEST(RestFrames, SayWhatIsWrong) {
   expect(head + "0,0,0.9" + tail,
          "mine.csv:4: point 3: d1 = [0, 0, 0.9] of norm 0.9 (allowed: 1 within 0.001)");
   expect(head + "0.6,0,0.8" + tail,
-         "mine.csv:4: point 3: d1 is 36.9 degrees away from across the rod (allowed: up to 5,");
+         "mine.csv:4: point 3: d1 is 36.9 degrees off the cross-section (allowed: up to 5,");
   expect(head + ",," + tail, "mine.csv:4: d1_x = \"\" is not a number (allowed: d1 in every row");
   expect(head + "0,0,-1" + tail, "mine.csv: d1 rotates by a right angle or more to point 3");
   expect("x,y,d1_x,d1_z\n", "mine.csv:1: 2 of the columns d1_x, d1_y, d1_z (allowed: all");

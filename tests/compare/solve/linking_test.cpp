@@ -34,7 +34,7 @@ Scene twisted_scene(double apart, double turns) {
   return scene;
 }
 
-/// With its ends this near, the loop that two turns make has passed through itself.
+/// At this distance of the ends, the loop that two turns cause has passed through itself.
 TEST(Linking, AShapeThatLostTurnsIsNotVerified) {
   Scene scene = twisted_scene(0.4, 2);
   scene.grippers.front().frame->d1 = Eigen::Vector3d::UnitY();

@@ -43,8 +43,8 @@ Eigen::Matrix3Xd between(const Shape& chain, const std::vector<double>& at) {
   return points;
 }
 
-/// Without the place of a clamp: the chain's first segment there is straight, so that its other
-/// points are off the rod by h^2 / 8 of the curvature, and this one is not.
+/// Removes a point of a chain at a clamp. The segment at a clamp is straight, so that the other
+/// points are off the rod by h^2 / 8 times the curvature, but not the point at the clamp.
 Shape without_clamps(Shape chain, double h) {
   std::vector<double>& s = chain.arc_length;
   constexpr double shorter = 0.75;

@@ -106,7 +106,7 @@ TEST(CameraTilt, IsRefusedWhereMoreThanWeightActs) {
            {"wire: the calibrated rod was observed by a tilted camera", "no camera_tilt)"}));
   seen.scenes[1].loads.clear();
   seen.scenes[1].gravity = {1, -9.81, 0};
-  EXPECT_TRUE(says(refusal(), {"wire: not the plane or gravity of wire", "under one gravity)"}));
+  EXPECT_TRUE(says(refusal(), {"wire: its plane or gravity differs from", "under one gravity)"}));
 }
 
 /// The probability of a logarithm of E by one shape, summed over all directions of both clamps, by

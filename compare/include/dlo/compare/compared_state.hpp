@@ -6,7 +6,7 @@
 
 namespace dlo::compare {
 
-/// Another equilibrium of the energy model than the compared one.
+/// An equilibrium of the energy model that was not compared.
 struct OtherState {
   /// Whether its second variation is positive; also true if its stability is not verified.
   bool stable = false;

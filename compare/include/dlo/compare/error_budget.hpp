@@ -40,17 +40,19 @@ struct BudgetPart {
 /// torque of the paper's law between unequal segments, which has no potential. All chains start
 /// from the force model's shape, so that they are on its branch of equilibria.
 struct Budget {
-  BudgetPart law;          ///< see above
-  BudgetPart bookkeeping;  ///< see above
-  BudgetPart twist;        ///< see above; zero if the force model includes twist
-  /// See above; zero if the force model includes natural curvature.
+  BudgetPart law;          ///< joint law of the scene instead of `hooke`
+  BudgetPart bookkeeping;  ///< end and mass convention of the scene instead of `consistent`
+  BudgetPart twist;        ///< neglected twist; zero if the force model includes twist
+  /// Neglected natural curvature; zero if the force model includes it.
   BudgetPart natural_curvature;
-  BudgetPart discretisation;  ///< see above
-  BudgetPart stretch;         ///< see above
-  BudgetPart contact;         ///< see above; zero if no rigid obstacle is in reach
-  BudgetPart not_at_rest;     ///< see above
-  BudgetPart interaction;     ///< see above
-  double total_m = 0;         ///< RMS of force model - rod
+  BudgetPart discretisation;  ///< rigid segments instead of a curve
+  BudgetPart stretch;         ///< stretch of the segments with the force model's c_c
+  /// Effect of the stiffness that the force model gives to rigid obstacles; zero if none is in
+  /// reach.
+  BudgetPart contact;
+  BudgetPart not_at_rest;  ///< distance of the force model from its equilibrium
+  BudgetPart interaction;  ///< remainder of the deviation
+  double total_m = 0;      ///< RMS of force model - rod
 };
 
 /// Splits the deviation of a force model's shape from the rod into its causes.

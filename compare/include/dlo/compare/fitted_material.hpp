@@ -157,8 +157,8 @@ struct ChainSprings {
   double stiffness = 0;
   double over_rod = 1;  ///< `stiffness` divided by EI / h [-]
   double rms_m = 0;     ///< RMS distance of the chain's points from the rod
-  /// Stiffness k of such a joint with the energy of discrete elastic rods, k (2 tan(angle/2))^2 / 2
-  /// [N m/rad].
+  /// Stiffness k of a joint between segments of that length with the energy of discrete elastic
+  /// rods, k (2 tan(angle/2))^2 / 2 [N m/rad].
   double binormal_stiffness = 0;
   /// Unequal segment lengths, scaled to the rod's length [m]; empty: all are equal.
   std::vector<double> segment_lengths;

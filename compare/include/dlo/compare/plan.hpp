@@ -68,7 +68,7 @@ struct Plan {
   std::vector<PlannedSpan> spans;          ///< by increasing arc length
   std::vector<PlannedObstacle> obstacles;  ///< in the scene's order
   bool frame_held = false;                 ///< whether a gripper holds the rod's frame
-  /// By increasing arc length; a single held frame causes no twist.
+  /// Intervals that may twist, by increasing arc length; empty if a single frame is held.
   std::vector<PlannedTwist> twist;
   /// N at which the polygon of law hooke, with the scene's bookkeeping, meets the target; 0: none
   /// up to `most_planned_points`, or unknown.

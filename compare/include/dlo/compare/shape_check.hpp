@@ -58,7 +58,7 @@ struct ShapeCheck {
   double whole_rms_m = 0;
   double whole_max_m = 0;        ///< largest deviation of the file as the whole rod
   std::vector<RodPart> between;  ///< intervals longer than 1e-3 l between adjacent points
-  std::string hint;              ///< what looks wrong, as a clause; may be empty
+  std::string hint;              ///< probable error of the file, as a clause; may be empty
   long worst_point = 0;          ///< point of the largest deviation, counted from 1 as in the file
   /// Position of the worst point in the scene's frame [m].
   Eigen::Vector3d worst_position = Eigen::Vector3d::Zero();
