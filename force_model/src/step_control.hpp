@@ -29,8 +29,8 @@ class StepControl {
   /// are not compared.
   void change_environment(const Rod& rod, const Eigen::Matrix3Xd& points);
 
-  /// With the automatic policy, makes the next descent_steps without momentum and with c_F =
-  /// 1/fastest, so that the potential energy decreases with each.
+  /// Requests that the next descent_steps steps have no momentum and c_F = 1/fastest, so that the
+  /// potential energy decreases with each. Has an effect with the automatic policy only.
   void descend();
 
   /// Corrects the estimate of the slowest mode. @param slowest  stiffness of the slowest mode in

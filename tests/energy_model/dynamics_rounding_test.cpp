@@ -97,7 +97,8 @@ MovingRod thread_with_payload(double mass, double damping) {
   return rod;
 }
 
-/// The payload is a pendulum, to the thread's share of the masses.
+/// Expects that the payload moves as a pendulum. @param share  largest allowed distance, in
+/// proportion to the thread's share of the mass
 void expect_pendulum(const Dynamics& moved, const std::vector<double>& times, double share) {
   ASSERT_EQ(moved.status, SolveStatus::converged) << moved.message;
   for (std::size_t k = 0; k < times.size(); ++k) {

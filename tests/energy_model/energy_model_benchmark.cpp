@@ -178,8 +178,8 @@ void warm_two_clamps(benchmark::State& state) {
 }
 BENCHMARK(warm_two_clamps)->Name("warm/two_clamps_spatial")->Unit(benchmark::kMicrosecond);
 
-/// Clamps that hold frames, turned against each other; `twins` is the time in units of that of the
-/// same problem with the twist left free.
+/// Measures the solution between clamps that hold frames, rotated against each other. `twins` is
+/// the time divided by that of the same problem without held frames.
 void twisted(benchmark::State& state) {
   const Problem free = two_clamps(10, 0.8, 0.3);
   Problem problem = free;

@@ -33,7 +33,8 @@ Eigen::RowVectorXd jacobian(const Slider& slider, const SpanEnergy& model, SpanP
          (slider.N[0] * J[0] + slider.N[1] * J[1] + slider.N[2] * J[2]);
 }
 
-/// c's second derivative, of a span in a plane: that of a tangent is -t a a^T, a its angle's.
+/// Returns the second derivative of c for a span in a plane. The second derivative of a tangent t
+/// is -t a a^T, where a is the gradient of the tangent's angle.
 Eigen::MatrixXd hessian(const Slider& slider, const SpanEnergy& model, SpanPoint& at) {
   const std::array<Eigen::MatrixXd, 3> J = model.tangent_jacobian(at);
   const Eigen::Matrix3Xd t = at.tangents();

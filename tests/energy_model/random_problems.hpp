@@ -170,27 +170,31 @@ inline energy_model::Problem random_rod_held(RandomNumbers& random, RandomSpace 
   return problem;
 }
 
-/// Returns a rod of unit length and stiffness under a weight along -y with Gamma = w l^3 / (EI)
-/// between 1e-2 and 1e4, 1 to 3 clamps and pins and 0 to 3 loads of up to 0.6 (1 + Gamma) EI/l^2
-/// each. The rod can reach its grips: they are on a random curve, in one of three problems moved
-/// towards each other. Clamps have the curve's directions, in one of three problems random ones.
-/// The same number always gives the same problem.
+/// Returns a random rod of unit length and stiffness. The same number always gives the same
+/// problem.
 ///
-/// A twisted problem is in space with two grips or more, all of them clamps that hold frames, each
-/// rotated by up to 1.5 turns either way, with GJ of 0.4 to 1.2 EI.
+/// A problem of the kind `plane` or `space` has a weight along -y with Gamma = w l^3 / (EI) between
+/// 1e-2 and 1e4, 1 to 3 clamps and pins, and 0 to 3 loads of up to 0.6 (1 + Gamma) EI/l^2 each. The
+/// grips are on a random curve, so that the rod reaches them; in a third of the problems they are
+/// moved towards each other. Clamps have the directions of the curve; in a third of the problems
+/// the directions are random.
 ///
-/// A curved problem has natural strains about each axis, in the plane about d2 only: a constant of
-/// up to 5/l plus a part that is linear in the arc length, of up to 2/l at the ends. It has in one
-/// of two cases a section of another kind, a clamp at its beginning, and in three of four cases
-/// another clamp or pin. Gamma is between 0.1 and 300, the weight in any direction. Every other one
-/// is in the x-y plane.
+/// A `twisted` problem is in space. It has two or three grips, all of them clamps that hold frames.
+/// Each frame is rotated by up to 1.5 turns in either sense. GJ is 0.4 to 1.2 EI.
 ///
-/// A strip is a curved problem, or in one of two cases straight, whose EI about d2 is a tenth to
-/// ten times that about d1. Its section is round in one of two cases.
+/// A `curved` problem has natural strains about each axis, or about d2 only in the plane: a
+/// constant of up to 5/l, plus a part that is linear in the arc length, of up to 2/l at the ends. A
+/// clamp holds the frame of its start. Half of the problems have an interval with another section,
+/// and three quarters another clamp or pin. Gamma is between 0.1 and 300, and the weight has any
+/// direction. Even numbers give problems in the x-y plane.
 ///
-/// A mixed problem is straight, has 1 to 4 grips and Gamma up to 1e5. Every other one is in the x-y
-/// plane, and of the clamps of the others every other one holds a frame, rotated by up to 1.5 turns
-/// either way.
+/// A `strip` is a curved problem, of which half are straight. Its EI about d2 is a tenth to ten
+/// times that about d1. Its interval with another section, if any, is round in half of the
+/// problems.
+///
+/// A `mixed` problem is straight and has 1 to 4 grips and Gamma up to 1e5. Even numbers give
+/// problems in the x-y plane. In the others, half of the clamps hold frames, which are rotated by
+/// up to 1.5 turns in either sense.
 inline energy_model::Problem random_problem(std::uint64_t number, RandomSpace space) {
   if (space == RandomSpace::twisted) return twisted_problem(number);
   if (space == RandomSpace::curved) return curved_problem(number);

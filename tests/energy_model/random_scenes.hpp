@@ -83,9 +83,8 @@ inline Agreement agreement_of(const energy_model::Problem& problem,
   return proven ? Agreement::both_stable : Agreement::contradict;
 }
 
-/// Start of `exact`: a search of its own, or the energy model's shape, which it confirms or
-/// corrects without a search. In the second case it does not run if the energy model has not
-/// converged.
+/// Start of `exact`. search: `exact` searches. energy: `exact` confirms or corrects the energy
+/// model's shape without a search, and does not run if the energy model has not converged.
 enum class ExactFrom { search, energy };
 
 /// Whether there is a clamp without a frame between two clamps that hold frames; `exact` refuses

@@ -34,7 +34,7 @@ TEST_P(RandomScenes, CompareTheEnergyModelWithMultipleShooting) {
   int refused_by_energy = 0;
   int refused_by_exact = 0;
   // Soft rods take seconds each; the program is for them.
-  constexpr double softest = 30;  // Gamma
+  constexpr double softest = 30;  // largest Gamma that is tested
   std::uint64_t taken = 0;
   for (std::uint64_t number = 0; taken < count; ++number) {
     SCOPED_TRACE(number);
@@ -77,7 +77,7 @@ INSTANTIATE_TEST_SUITE_P(PlaneAndSpace, RandomScenes,
 TEST(RankedStarts, ReachEnergiesAsLowAsAnotherSearch) {
   // In 911 three starts cost as much as the second one but for a twentieth of what they fall by;
   // one of them leads to the lowest shape.
-  constexpr double softest = 30;  // Gamma
+  constexpr double softest = 30;  // largest Gamma that is tested
   int taken = 0;
   for (std::uint64_t number = 911; taken < (test::sanitized ? 1 : 11); ++number) {
     SCOPED_TRACE(number);

@@ -15,7 +15,8 @@ inline energy_model::Problem framed_clamps(double gamma, double span, double tor
   return problem;
 }
 
-/// Returns such a rod without weight whose second clamp has any position and direction.
+/// Returns a rod without weight between two clamps that hold frames. The second clamp has the given
+/// position, direction and roll.
 inline energy_model::Problem rolled_clamps(const Eigen::Vector3d& end,
                                            const Eigen::Vector3d& direction,
                                            double torsional_stiffness, double roll) {

@@ -30,7 +30,8 @@ std::string left_out(const EnergySearch& search) {
   return all;
 }
 
-/// Every equilibrium of a rod of one span is the first find of one start.
+/// Expects that the strategies together count each equilibrium of a rod of one span exactly once as
+/// found first.
 void expect_accounted(const Problem& problem) {
   const EnergySearch search = search_energy(problem);
   ASSERT_FALSE(search.strategies.empty());

@@ -183,8 +183,8 @@ TEST(SoftContact, RandomScenesListEachEquilibriumOnceWithTheForceOfItsEnergy) {
   EXPECT_GE(pressed, scenes * 2 / 3);
 }
 
-/// In its middle plane a deep box pushes to both sides equally. The rod slides to one of them, as
-/// it does if the box is slightly off the plane.
+/// In the middle plane of a deep box the forces to both sides are equal. The rod slides to one of
+/// the sides, as it does if the box is slightly off the plane.
 TEST(SoftContact, ARodInTheMiddlePlaneOfADeepBoxLeavesIt) {
   const auto solved = [](double aside) {
     Problem problem = heavy_cantilever(10, 0);

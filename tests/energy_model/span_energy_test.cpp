@@ -140,7 +140,7 @@ Span line_loaded_span(bool planar) {
 }
 
 /// Returns an intrinsically curved span with a couple and a force, free to rotate at its start.
-Span turned_span(bool planar) {
+Span span_with_couple(bool planar) {
   Span span = free_natural_span(planar);
   span.loads[0].couple = 3;
   span.loads.push_back({0.8, {0, 0, 0}, -2});
@@ -234,7 +234,7 @@ INSTANTIATE_TEST_SUITE_P(
                     Case{free_natural_span, true}, Case{free_natural_span, false},
                     Case{strip_span, true}, Case{strip_span, false}, Case{free_strip_span, false},
                     Case{line_loaded_span, true}, Case{line_loaded_span, false},
-                    Case{turned_span, true}));
+                    Case{span_with_couple, true}));
 
 }  // namespace
 }  // namespace dlo::energy_model

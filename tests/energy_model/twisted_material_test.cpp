@@ -28,7 +28,8 @@ Problem rolled_section(double roll) {
   return problem;
 }
 
-/// Where a clamp holds d1: its part across the direction, turned on by its roll.
+/// Returns the d1 that a clamp holds: the given d1 without its part along the direction, rotated by
+/// the roll.
 Vector3d held_d1(const Grip& clamp) {
   const Vector3d t = clamp.direction->normalized();
   const Vector3d d1 = (*clamp.frame->d1 - clamp.frame->d1->dot(t) * t).normalized();

@@ -191,7 +191,7 @@ TEST(Vibrations, OfAHangingRodComeToThoseOfAChain) {
 /// m' = n x t, n' = -w - omega^2 dr.
 using VibratingState = Eigen::Matrix<double, 3, 8>;
 
-/// From the tip to the clamp, by the classical Runge-Kutta method.
+/// Integrates a state from the tip to the clamp by the classical Runge-Kutta method.
 VibratingState at_clamp(VibratingState y, const Vector3d& weight, double omega_squared) {
   const auto slope = [&](double, const VibratingState& at) {
     const Vector3d t = at.col(1);

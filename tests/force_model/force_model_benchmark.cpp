@@ -43,7 +43,8 @@ void report(benchmark::State& state, double plain, double kernel, double rods) {
   state.counters["speedup"] = plain / (kernel / rods);
 }
 
-/// Steps both in turns, `steps` at a time, and keeps the fastest turn of each.
+/// Runs the plain simulation and the kernel alternately, `steps` steps at a time, and reports the
+/// shortest time of each.
 template <typename StepKernel>
 void compare_with_plain(benchmark::State& state, const BatchRod& one, double rods,
                         const StepKernel& step_kernel) {
@@ -101,8 +102,8 @@ void variants(benchmark::internal::Benchmark* benchmark) {
 BENCHMARK(one_rod)->Apply(variants)->Unit(benchmark::kMicrosecond);
 BENCHMARK(batch_of_64)->Apply(variants)->Unit(benchmark::kMicrosecond);
 
-/// From straight until the tip stays within 1e-3 of its movement from where it rests. Argument: by
-/// how much E is lowered.
+/// Measures the time from a straight start until the tip stays within 1e-3 of its displacement from
+/// its position at rest. Argument: divisor of E.
 void straight_to_rest(benchmark::State& state) {
   test::SteelRod steel;
   steel.EI /= static_cast<double>(state.range(0));

@@ -21,8 +21,8 @@ constexpr int slow = 8;
 /// count as a failure.
 constexpr double least_step = 1e-9;
 
-/// At a break the velocity jumps: the end of a step uses the velocity before the break, the begin
-/// of the next one the velocity after it.
+/// Interval around a break of the drive, at which the velocity jumps. A step that ends at the break
+/// uses the velocity before it; the step that begins there uses the velocity after it.
 double instant(double time) { return 1e-12 * std::max(1.0, std::abs(time)); }
 double just_before(double time) { return time - instant(time); }
 double just_after(double time) { return time + instant(time); }

@@ -22,10 +22,10 @@ void add_difference_block(Eigen::Index p, Eigen::Index q, const Eigen::Matrix3d&
 /// Terms of the Hessian to compute.
 enum class HessianTerms {
   all,
-  /// Without the terms that make the Hessian negative: compressed segments, moments of joints and
-  /// forces of round obstacles change their direction as the points move sideways. Far from
-  /// equilibrium these terms are the largest and the least informative (as in projected Newton
-  /// methods for cloth: Teran et al., 2005).
+  /// All terms except those that make the Hessian negative: the changes of direction of compressed
+  /// segments, of moments of joints and of forces of round obstacles. Far from equilibrium these
+  /// terms are the largest and the least informative (as in projected Newton methods for cloth:
+  /// Teran et al., 2005).
   stiffening,
 };
 

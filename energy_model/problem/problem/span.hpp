@@ -77,9 +77,9 @@ struct Span {
   double length = 1;
   bool planar = true;
   bool confined = false;  ///< Problem::confined_to_plane
-  /// Direction of the clamp at the start, which is then the anchor.
+  /// Direction of a clamp at the start; empty if there is none. That clamp is the anchor.
   std::optional<Eigen::Vector3d> start_direction;
-  /// Direction of the clamp at the end, which is then the last of `holds`.
+  /// Direction of a clamp at the end; empty if there is none. That clamp is the last of `holds`.
   std::optional<Eigen::Vector3d> end_direction;
   double anchor = 0;        ///< s of the first grip
   std::vector<Hold> holds;  ///< other grips, by growing s

@@ -22,7 +22,7 @@ constexpr double dependent = 1e-10;
 /// relative 1e-9. Laguerre's method approaches it from above: for a polynomial with real roots it
 /// converges to the largest one without passing it. The polynomial is the product of the pivots of
 /// x - T.
-/// @param beside  off-diagonal
+/// @param beside  elements next to the diagonal
 double largest_eigenvalue(const Eigen::Ref<const Eigen::VectorXd>& diagonal,
                           const Eigen::Ref<const Eigen::VectorXd>& beside) {
   const Eigen::Index n = diagonal.size();

@@ -195,8 +195,9 @@ NewtonIteration::Outcome NewtonIteration::judge_move(double moved) {
     }
     return Outcome::equilibrium;
   }
-  // With constraints the caller examines the second variation; without constraints the factor has
-  // to determine it.
+  // With constraints the caller examines the second variation, so that a factor from farther away
+  // may be kept. Without constraints the factor itself shows whether the Hessian is positive
+  // definite.
   const bool near = moved * (1 + options_.load) <= factor_reach &&
                     !(borrowed && options_.first_hessian != nullptr);
   const bool shrinks = solution_.next_step < fast_contraction * moved && model_.constraints() > 0;

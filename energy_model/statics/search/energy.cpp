@@ -98,9 +98,10 @@ std::vector<double> stable_energies(const Problem& problem, const Equilibrium& l
   return sums;
 }
 
-/// Stores in each equilibrium what its search has found.
-/// @param solutions  of the spans; `result` contains all of their combinations if it has several
-///   elements
+/// Stores the energies of the stable equilibria and the number of passing starts in each
+/// equilibrium.
+/// @param solutions  solutions of each span
+/// @param result     the lowest equilibrium, or all combinations of `solutions`
 void note_search(const Problem& problem, const std::vector<std::vector<SpanSolution>>& solutions,
                  int passing_starts, std::vector<Equilibrium>& result) {
   std::vector<double> energies;

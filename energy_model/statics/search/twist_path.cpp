@@ -331,7 +331,8 @@ class TwistPath {
   bool stiff_ = false;  // no eigenvalue of the last tested shape is near zero
 };
 
-/// Refines with all coefficients and, with rigid obstacles, with converged contacts; certified.
+/// Refines a solution with all coefficients and certifies it. If the span has rigid obstacles, the
+/// active set of contacts is solved too.
 SpanSolution certified(SpanSolution solution, const SpanOptions& options,
                        SpanWorkspace& workspace) {
   Span span = solution.model->span();

@@ -86,7 +86,8 @@ class TwistedSpan {
 
   [[nodiscard]] std::vector<SpanSolution> without_twist(const Remembered* last) const {
     SpanOptions options = options_;
-    // Solutions without twist are no results.
+    // The log counts the starts, but not the solutions, which are not equilibria of the twisted
+    // rod.
     SearchLog log;
     if (options_.wants_all()) options.log = &log;
     std::vector<SpanSolution> found =

@@ -36,8 +36,8 @@ class Batch {
   static constexpr std::size_t rods_per_block = 8;
 
   /// Creates the batch.
-  /// @throws std::invalid_argument if there are no rods, if they differ in what must be equal, if
-  /// one is refused (see above), or as Simulation
+  /// @throws std::invalid_argument if there are no rods, if they differ in a property that must be
+  /// equal, if a batch does not support one of them, or if Simulation refuses one
   explicit Batch(const std::vector<BatchRod>& rods);
   Batch(const Batch& other) = delete;
   Batch& operator=(const Batch& other) = delete;

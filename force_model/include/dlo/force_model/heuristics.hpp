@@ -26,7 +26,7 @@ struct QuarterCircle {
 [[nodiscard]] double contraction_stiffness(double force, double percent);
 
 /// Returns c_c [N] for the rod's own weight (Formula 12): m g 100 / percent.
-/// @param mass  [kg];  @param gravity  [m/s^2];  @param percent  the paper says 3 to 5
+/// @param mass  [kg];  @param gravity  [m/s^2];  @param percent  3 to 5 in the paper
 [[nodiscard]] double contraction_stiffness(double mass, double gravity, double percent);
 
 /// Trigonometric factor of Formula 13.
