@@ -35,7 +35,8 @@ class SpreadActions {
   /// Indices of the yielding obstacles in Problem::obstacles.
   [[nodiscard]] const std::vector<std::size_t>& yielding() const { return yielding_; }
 
-  /// Returns the action of the first column, then those of yielding().
+  /// Returns the action of weight, line loads and drag together, then one action for each obstacle
+  /// of yielding().
   /// @param middle  middle of the rod [m], at which the actions are applied, so that imbalance_of()
   ///                counts their lever arm
   [[nodiscard]] std::vector<Action> integrate(const Eigen::Vector3d& middle) const {

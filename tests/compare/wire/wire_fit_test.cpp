@@ -421,7 +421,7 @@ TEST(WireFit, AnArchBetweenTwoClampsTellsItsStiffnessOnlyUnderALoad) {
 // identifiable.
 TEST(WireFit, DoesNotLookForAStiffnessThatARopeHasNot) {
   constexpr double gamma = 500;
-  constexpr double searched = 1e5;  // up to that (MaterialFitOptions::smallest_ratio)
+  constexpr double searched = 1e5;  // largest w l^3 / (EI) of the search
   std::mt19937 random(12);
   std::vector<Picture> pictures;
   for (const double angle : {0.0, 40.0}) {
