@@ -68,7 +68,7 @@ class PythonSimulator {
   std::mutex calling_;
 };
 
-/// Reads card options. @throws compare::InputError naming the value that is out of range
+/// Reads the options of a results table. @throws compare::InputError if a value is out of range
 compare::CardOptions card_options(const py::dict& what, const std::string& name) {
   compare::CardOptions options{.points = what["points"].cast<int>(),
                                .threads = what["threads"].cast<int>(),
@@ -97,8 +97,8 @@ struct Gate {
   compare::RegressionTolerance tolerance;
 };
 
-/// Reads the baseline and its tolerance. @throws compare::InputError naming the value that is out
-/// of range, or the baseline's file
+/// Reads the baseline and its tolerance. @throws compare::InputError if a tolerance is out of
+/// range, or naming the baseline's file
 std::optional<Gate> gate_of(const py::dict& what) {
   const auto file = what["baseline"].cast<std::string>();
   if (file.empty()) return std::nullopt;

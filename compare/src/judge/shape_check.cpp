@@ -186,7 +186,7 @@ AlignOptions align_options(const Scene& scene, const ShapeCheckOptions& options)
 }
 
 /// Compares an aligned shape with an equilibrium: sets all of ShapeCheck except the state, other
-/// equilibria, stretched_length_m, turn_is_clear and E*/E.
+/// equilibria, unverified, stretched_length_m, turn_is_clear, E*/E and E*.
 ShapeCheck compared(const Scene& scene, const MeasuredShape& shape, Alignment laid,
                     const energy_model::Equilibrium& rod) {
   ShapeCheck result;

@@ -159,7 +159,7 @@ void add_values(std::string& out, const Json& object, const std::string& indent,
 }
 
 /// Adds the lists of objects within a part of a document.
-/// @param path  of the part, such as "dynamic/";  @param title  likewise, in words
+/// @param path  path of the part, such as "dynamic/";  @param title  title of the part, in words
 void add_tables(std::string& out, const Document& document, const Json& part,
                 const std::string& path, const std::string& title) {
   for (const auto& [key, value] : part.items()) {

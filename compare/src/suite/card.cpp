@@ -111,8 +111,8 @@ CardScene card_scene(const BatteryScene& scene, const energy_model::Equilibrium&
   return result;
 }
 
-/// Order of convergence and error up to which a motion has no cause: motions that converge with
-/// about second order, or whose error is at most 1e-3 of their travel.
+/// Order of convergence from which, and error up to which, no cause is searched for a motion: it
+/// converges with about second order, or its error is at most 1e-3 of its travel.
 constexpr double converges = 1.5;
 constexpr double hardly_off = 1e-3;
 

@@ -60,10 +60,10 @@ void bend_slightly(SpanSolution& solution, NewtonBuffers& buffers) {
 /// Number of initial guesses, in the order of their energy, that the search for the lowest minimum
 /// follows.
 constexpr std::size_t followed_starts = 2;
-/// Number of such guesses for a rod with material directors, whose lowest shape is harder to
-/// predict.
+/// Number of followed initial guesses for a rod with material directors, whose lowest shape is
+/// harder to predict.
 constexpr std::size_t followed_natural_starts = 6;
-/// Number of such guesses if there are soft obstacles, which a rod may pass on either side.
+/// Number of followed initial guesses with soft obstacles, which a rod may pass on either side.
 constexpr std::size_t followed_starts_beside_obstacles = 6;
 
 /// Largest difference of points, divided by the length, up to which loosely converged shapes count
