@@ -8,8 +8,8 @@
 namespace dlo::compare {
 namespace {
 
-/// Returns the power of ten of a number's first nonzero digit. The number has plain digits with at
-/// most one point, and an exponent.
+/// Returns the power of ten of a number's first nonzero digit, plus one if the digit is before the
+/// point. The number has plain digits with at most one point, and an exponent.
 long decimal_exponent(std::string_view number) {
   const std::size_t mark = std::min(number.find_first_of("eE"), number.size());
   const std::string_view digits = number.substr(0, mark);

@@ -119,17 +119,15 @@ class MovingSpan {
     return result;
   }
 
-  [[nodiscard]]  /// Returns the rotation from space to the axes of the clamp at the start.
-  Eigen::Matrix3d
-  to_axes(double time) const {
+  /// Returns the rotation from space to the axes of the clamp at the start.
+  [[nodiscard]] Eigen::Matrix3d to_axes(double time) const {
     if (!placed_.span.start_direction) return placed_.frame;
     return placed_.frame * pose(placed_.anchor_grip, time).turn.conjugate().toRotationMatrix();
   }
 
-  [[nodiscard]]  /// Returns an obstacle's place: its point x at the begin has moved to p + T (x -
-                 /// p0).
-  BodyPlace
-  place(std::size_t obstacle, double seconds, const Eigen::Matrix3d& axes) const {
+  /// Returns an obstacle's place: its point x at the begin has moved to p + T (x - p0).
+  [[nodiscard]] BodyPlace place(std::size_t obstacle, double seconds,
+                                const Eigen::Matrix3d& axes) const {
     BodyPlace result;
     result.turn = axes * placed_.frame.transpose();
     if (obstacle >= rod_.obstacle_motions.size() || !rod_.obstacle_motions[obstacle]) return result;
@@ -200,10 +198,9 @@ class MovingSpan {
     return result;
   }
 
-  [[nodiscard]]  /// Returns the breaks in the span's units, ascending. Breaks at the same instant
-                 /// cause one impulse.
-  std::vector<double>
-  own_breaks() const {
+  /// Returns the breaks in the span's units, ascending. Breaks at the same instant cause one
+  /// impulse.
+  [[nodiscard]] std::vector<double> own_breaks() const {
     std::vector<double> breaks = rod_.breaks;
     for (double& time : breaks) time /= time_;
     std::sort(breaks.begin(), breaks.end());
@@ -212,9 +209,8 @@ class MovingSpan {
     return breaks;
   }
 
-  [[nodiscard]]  /// Returns d1 at the begin of the span, for a span where no clamp prescribes it.
-  std::optional<Eigen::Vector3d>
-  first_d1(const StartingShape& start) const {
+  /// Returns d1 at the begin of the span, for a span where no clamp prescribes it.
+  [[nodiscard]] std::optional<Eigen::Vector3d> first_d1(const StartingShape& start) const {
     const Samples at = start(std::vector<double>{placed_.start});
     if (at.d1.cols() == 0) return std::nullopt;
     const Eigen::Vector3d tangent = placed_.frame * at.tangents.col(0);
@@ -222,12 +218,11 @@ class MovingSpan {
            (placed_.frame * at.d1.col(0));
   }
 
-  [[nodiscard]]  /// Returns the rates at which the unknowns of a shape in equilibrium follow the
-                 /// motion of grips and
-                 /// obstacles: the minimum-norm solution of K x' - J^T mu' + R' = 0, J x' + c' = 0,
-                 /// as rods on pins can rotate freely.
-  Eigen::VectorXd
-  equilibrium_rates(SpanDynamics& model, const SpanInstant& at) const {
+  /// Returns the rates at which the unknowns of a shape in equilibrium follow the motion of grips
+  /// and obstacles: the minimum-norm solution of K x' - J^T mu' + R' = 0, J x' + c' = 0, as rods on
+  /// pins can rotate freely.
+  [[nodiscard]] Eigen::VectorXd equilibrium_rates(SpanDynamics& model,
+                                                  const SpanInstant& at) const {
     constexpr double step = 1e-5;  // time step, whose square is the error
     const Eigen::Index n = model.size();
     const Eigen::Index m = model.constraints();
@@ -255,11 +250,10 @@ class MovingSpan {
     return -solver.compute(matrix).solve(change).head(n);
   }
 
-  [[nodiscard]]  /// Returns velocities at the points of SpanDynamics in the span's units: begins
-                 /// and ends of
-                 /// elements and the nodes between.
-  Eigen::MatrixX3d
-  point_velocities(const StartingVelocities& velocities, const SpanDynamics& model) const {
+  /// Returns velocities at the points of SpanDynamics in the span's units: begins and ends of
+  /// elements and the nodes between.
+  [[nodiscard]] Eigen::MatrixX3d point_velocities(const StartingVelocities& velocities,
+                                                  const SpanDynamics& model) const {
     const std::vector<Piece> pieces = pieces_of(placed_.span);
     const Eigen::Index nodes = model.nodes().size() / std::ssize(pieces);
     std::vector<double> arc_lengths;
@@ -316,14 +310,10 @@ class MovingSpan {
     run.depth = integrator.depth() * length_;
   }
 
-  /// settle() prepares the initial state. run_with() simulates with one contact law and ends when
-  /// the rod enters a rigid obstacle too deeply.
-  [[nodiscard]]  /// Satisfies the constraints, and sets initial velocities if the rod is in motion.
-                 /// @return the
-                 /// reason of a failure; empty on success
-  std::string
-  settle(SpanIntegrator& integrator, SpanDynamics& model, const DynamicsOptions& options,
-         SpanInstant& at) const {
+  /// Prepares the initial state: satisfies the constraints, and sets initial velocities if the rod
+  /// is in motion. @return the reason of a failure; empty on success
+  [[nodiscard]] std::string settle(SpanIntegrator& integrator, SpanDynamics& model,
+                                   const DynamicsOptions& options, SpanInstant& at) const {
     at.v = Eigen::VectorXd::Zero(model.size());
     std::string message = integrator.project(at);
     if (message.empty() && model.has_twist()) message = integrator.settle_twist(at);
@@ -337,6 +327,7 @@ class MovingSpan {
     return integrator.project(at);
   }
 
+  /// Simulates with one contact law; ends when the rod enters a rigid obstacle too deeply.
   [[nodiscard]] SpanRun run_with(const ContactLaw& contact, const StartingShape& start,
                                  const std::vector<PointMass>& masses,
                                  std::span<const double> times, const DynamicsOptions& options,

@@ -36,7 +36,7 @@ double crossing_angle(const Eigen::Vector3d& a, const Eigen::Vector3d& b, const 
 }
 
 /// Whether the half-line from `from` along `direction` passes the segment ab at less than
-/// `distance`.
+/// `distance`, farther than `distance` from its start.
 bool passes(const Eigen::Vector3d& from, const Eigen::Vector3d& direction, const Eigen::Vector3d& a,
             const Eigen::Vector3d& b, double distance) {
   const auto across = [&](const Eigen::Vector3d& v) -> Eigen::Vector3d {
