@@ -288,7 +288,7 @@ MaterialFit fit_material_alone(MaterialProfiles& material, const MaterialProfile
   const double least = found.over_modulus.minimum().value;
   const MaterialErrors errors(material, found.best, least);
   MaterialFit fit;
-  errors.tell(fit);
+  errors.write_to(fit);
   const NamedValue stiffness = scenes.front().stiffness();
   LogProfile over_modulus = found.over_modulus;
   const Finding modulus =
@@ -297,7 +297,7 @@ MaterialFit fit_material_alone(MaterialProfiles& material, const MaterialProfile
   fit.not_identified =
       what_is_not_identified(modulus, stiffness, stiffness.name, options.identified_within);
   if (material.has_density()) find_density(material, errors, fit);
-  if (!material.is_forced()) fit.not_identified = why_unforced(scenes.front());
+  if (!material.is_forced()) fit.not_identified = why_stiffness_not_identifiable(scenes.front());
   if (options.density && !material.has_density() && fit.not_identified.empty()) {
     fit.not_identified = why_weight_alone(scenes.front());
   }

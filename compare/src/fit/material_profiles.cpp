@@ -95,7 +95,7 @@ void MaterialErrors::allow_for(const ErrorCovariance& covariance,
       .degrees_of_freedom = effects_[0].degrees_of_freedom};
 }
 
-void MaterialErrors::tell(MaterialFit& fit) const {
+void MaterialErrors::write_to(MaterialFit& fit) const {
   fit.noise_m = noise_m_;
   fit.noise_is_estimated = !options_.noise;
   fit.degrees_of_freedom = static_cast<int>(freedom_);
@@ -255,7 +255,7 @@ std::shared_ptr<const ShapeMisfit::Solved> ShapeMisfit::nearer(
   return result;
 }
 
-bool ShapeMisfit::search_at(const MaterialPoint& material) {
+bool ShapeMisfit::find_nearer(const MaterialPoint& material) {
   bool better = false;
   std::vector<std::shared_ptr<const Solved>> next;
   for (std::size_t i = 0; i < scenes_.size(); ++i) {

@@ -26,7 +26,7 @@ namespace dlo::compare {
 /// A rod with one gripper is solved anew at each material. With several grippers each equilibrium
 /// is followed from that of the nearest material solved so far (EnergyOptions::start), since a
 /// search costs a hundred times as much. A search is made at the first material, where following
-/// fails, and where search_at() requests it, at most `most_searches` times per scene.
+/// fails, and where find_nearer() requests it, at most `most_searches` times per scene.
 class ShapeMisfit {
  public:
   ShapeMisfit(const std::vector<Scene>& scenes, MeasuredShapes& measured);
@@ -41,7 +41,7 @@ class ShapeMisfit {
   /// true if an equilibrium differs and is nearer to the shape's points. All results at other
   /// materials are then discarded, and a rod with one gripper is followed from that equilibrium
   /// from then on.
-  bool search_at(const MaterialPoint& material);
+  bool find_nearer(const MaterialPoint& material);
 
   /// Returns the equilibria at a material; empty where there is none.
   [[nodiscard]] FittedRods::Rods rods(const MaterialPoint& material);
@@ -160,7 +160,7 @@ class MaterialErrors {
   MaterialErrors(MaterialProfiles& material, const MaterialPoint& best, double least);
 
   /// Sets noise, correlation and scatter of the result.
-  void tell(MaterialFit& fit) const;
+  void write_to(MaterialFit& fit) const;
 
   /// Returns the sum of squares at the ends of a number's interval [m^2].
   [[nodiscard]] double level(std::size_t number) const;
