@@ -22,6 +22,11 @@ constexpr std::size_t coarse_stride = 20;
 /// points.
 constexpr int refinements = 6;
 
+/// Number of additional points on each side of a contact's ends, each at half the distance of the
+/// one before. If a point contact should become a part in contact, the rod is within the obstacle
+/// next to it, closer than the grid resolves.
+constexpr int halvings_beside_contact = 10;
+
 /// Clearance of points that are not evaluated, as no point near them is low enough.
 constexpr double not_evaluated = std::numeric_limits<double>::infinity();
 
@@ -37,6 +42,38 @@ GapMinimum lowest_between(const Span::Obstacle& obstacle, const SpanShape& shape
   }
   lowest.feature = obstacle.body.feature(shape.sample(std::array{lowest.s}).points.col(0));
   return lowest;
+}
+
+/// Adds minima of the clearance below `below` on both sides of a contact's ends, closer than
+/// `reach`.
+void add_beside_contacts(const Span& span, const Span::Obstacle& obstacle, const SpanShape& shape,
+                         double below, double reach, std::vector<GapMinimum>& found) {
+  const auto look = [&](double end, double first_step) {
+    std::vector<double> s;
+    for (double step = first_step; std::ssize(s) < halvings_beside_contact; step /= 2) {
+      s.push_back(std::clamp(end + step, 0.0, span.length));
+    }
+    const Eigen::VectorXd clearance = obstacle.body.clearances(shape.sample(s).points);
+    for (Eigen::Index k = 1; k + 1 < clearance.size(); ++k) {
+      // At least two thirds of the depth at a minimum occur at one of these points.
+      const bool is_low = clearance[k] < below / 2;
+      if (!is_low || clearance[k] > clearance[k - 1] || clearance[k] >= clearance[k + 1]) continue;
+      const auto at = static_cast<std::size_t>(k);
+      const double low = std::min(s[at - 1], s[at + 1]);
+      const double high = std::max(s[at - 1], s[at + 1]);
+      const GapMinimum lowest = lowest_between(obstacle, shape, low, s[at], high);
+      // The grid may already have found it.
+      const bool known = std::any_of(found.begin(), found.end(), [&](const GapMinimum& other) {
+        return other.obstacle.index == obstacle.index && other.s >= low && other.s <= high;
+      });
+      if (lowest.clearance < below && !known) found.push_back(lowest);
+    }
+  };
+  for (const Span::Contact& contact : span.contacts) {
+    if (contact.obstacle.index != obstacle.index) continue;
+    look(contact.begin, -reach);
+    look(contact.end, reach);
+  }
 }
 
 /// Number of grid points. Between two of them a shape of curvature k penetrates l^2 k / (8 grid^2)
@@ -180,6 +217,7 @@ std::vector<GapMinimum> gap_minima(const Span& span, const SpanShape& shape, dou
       GapMinimum lowest = lowest_between(obstacle, shape, low, at, high);
       if (lowest.clearance < below) found.push_back(std::move(lowest));
     }
+    add_beside_contacts(span, obstacle, shape, below, h, found);
   }
   std::sort(found.begin(), found.end(), [](const auto& a, const auto& b) { return a.s < b.s; });
   return found;

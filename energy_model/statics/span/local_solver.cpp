@@ -76,6 +76,15 @@ SpanSolution LocalSolver::from_start(const Start& from) {
       solution.multipliers.resize(0);
       descend(solution);
     }
+    if (solution.model->constraints() > 0 && !solution.is_equilibrium() &&
+        !solution.model->has_soft_obstacles()) {
+      solution.x = start;
+      solution.multipliers.resize(0);
+      descend_by_augmented_lagrangian(
+          solution,
+          {.load = traits_.load, .deadline = &options_.deadline, .stiffness = traits_.stiffness});
+      if (succeeded(solution.status)) newton(solution);
+    }
     spent += solution.evaluations;
     solution.evaluations = spent;
     const bool plain = solution.model->constraints() == 0 && !solution.model->has_soft_obstacles();

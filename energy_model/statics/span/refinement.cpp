@@ -9,6 +9,7 @@
 #include "base/legendre.hpp"
 #include "certify/certify.hpp"
 #include "certify/piece_cuts.hpp"
+#include "newton/trust_region.hpp"
 #include "span/span_traits.hpp"
 #include "strain/second_derivatives.hpp"
 
@@ -137,6 +138,8 @@ class Refinement {
   /// Solves with more coefficients. @param solution  its factor is used up
   [[nodiscard]] SpanSolution with_terms(SpanSolution& solution, int terms) {
     SpanSolution finer = on_.workspace().with_terms(solution, terms);
+    const Eigen::VectorXd x = finer.x;
+    const Eigen::VectorXd multipliers = finer.multipliers;
     if (solution.factor) {
       const Eigen::MatrixXd hessian =
           prolonged(solution.factor->system.hessian(), *solution.model, *finer.model);
@@ -148,6 +151,14 @@ class Refinement {
     const bool descends = finer.model->size() <= most_descended;
     if (descends && (!finer.is_equilibrium() || finer.model->has_soft_obstacles()))
       on_.descend(finer);
+    if (!finer.is_equilibrium() && !finer.model->has_soft_obstacles()) {
+      finer.x = x;
+      finer.multipliers = multipliers;
+      descend_by_augmented_lagrangian(finer, {.load = traits_.load,
+                                              .deadline = &on_.options().deadline,
+                                              .stiffness = traits_.stiffness});
+      if (succeeded(finer.status)) on_.newton(finer);
+    }
     finer.evaluations += solution.evaluations;
     return finer;
   }
