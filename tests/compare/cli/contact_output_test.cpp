@@ -58,7 +58,8 @@ TEST_F(ContactCommand, FrictionIsLeftOutAloud) {
     EXPECT_EQ(with.at("neglected"), json({"friction"}));
     EXPECT_EQ(with.at("points_m"), without.at("points_m"));
     EXPECT_FALSE(without.contains("neglected"));
-    EXPECT_TRUE(says(solve("text", rough).out, {"\nneglected ", " friction\n", "friction could hold others"}));
+    EXPECT_TRUE(says(solve("text", rough).out,
+                     {"\nneglected ", " friction\n", "friction could hold others"}));
     EXPECT_TRUE(says(solve("csv", rough).err, {"neglects the friction"}));
     EXPECT_FALSE(json::parse(solve("json", rough_below).out).contains("neglected"));
   }

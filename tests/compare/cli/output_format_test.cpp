@@ -195,7 +195,8 @@ TEST(EquilibriaText, OfAShapeThatIsNotJudgedHasNoEigenvalue) {
   const dlo::compare::Scene scene =
       dlo::compare::load_scene(std::string(DLO_DATA) + "/scenes/spring_steel_175.toml");
   const std::string text = dlo::cli::equilibria_text(all, scene);
-  EXPECT_TRUE(says(text, {"1           0  -       not_verified                    -  [", "2           0  no      not_verified                 -2.5  ["}));
+  EXPECT_TRUE(says(text, {"1           0  -       not_verified                    -  [",
+                          "2           0  no      not_verified                 -2.5  ["}));
   EXPECT_EQ(wrong_word(text), "");
   const dlo::cli::Json document = dlo::cli::equilibria_json(all, scene, {});
   EXPECT_TRUE(document.at("equilibria")[0].at("stable").is_null());

@@ -138,7 +138,8 @@ TEST_F(Command, SolveReturnsAnEquilibriumByItsNumberInTheListOfAll) {
   const double pin = second.at("grippers")[0].at("force_N")[1];
   const double peg = second.at("contacts")[0].at("force_N")[1];
   EXPECT_NEAR(pin + peg, 9.81 * (1.5 + 0.06), 1e-6);
-  EXPECT_TRUE(says(run("solve " + path + " --equilibrium 2").out, {"\nobstacles\n  obstacle  force [N]\n         1  ["}));
+  EXPECT_TRUE(says(run("solve " + path + " --equilibrium 2").out,
+                   {"\nobstacles\n  obstacle  force [N]\n         1  ["}));
   const std::string beyond = std::to_string(all.size() + 1);
   EXPECT_TRUE(says(run("solve " + path + " --equilibrium " + beyond).err,
                    {"equilibrium " + beyond + ": the search found"}));
