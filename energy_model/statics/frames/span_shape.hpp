@@ -25,8 +25,8 @@ inline constexpr double closest_cuts = 1e-9;
   return span.held_within(s, s, closest_cuts) != HeldBy::nothing;
 }
 
-/// Returns the arc lengths where strains may have kinks, ascending, each once: ends, grips, loads
-/// and section changes.
+/// Returns the arc lengths where strains may have kinks, ascending, each once: ends, grips, loads,
+/// ends of line loads and section changes.
 [[nodiscard]] std::vector<double> kinks_of(const Span& span);
 
 /// Samples of a span's shape, in the span's units and frame.

@@ -99,8 +99,8 @@ template <int width>
 inline void multiply_strip(const ConstColumns& a, const Factors& b, const Columns& result,
                            std::ptrdiff_t first, std::ptrdiff_t j) {
   // A single column needs many registers so that its sums do not wait for each other.
-  if (a.rows >= lane_count)
-    return multiply_rows < width == 1 ? 8 : 2, width > (a, b, result, first, j);
+  constexpr int registers = width == 1 ? 8 : 2;
+  if (a.rows >= lane_count) return multiply_rows<registers, width>(a, b, result, first, j);
   for (std::ptrdiff_t c = j; c < j + width; ++c) {
     for (std::ptrdiff_t i = first; i < a.rows; ++i) {
       double sum = 0;

@@ -93,8 +93,7 @@ inline constexpr double rough_step = 1e-5;
 enum class NewtonMethod {
   /// Converges to an equilibrium, stable or not. A factor of another shape serves the first steps
   /// only, and is replaced by the shape's own before the last ones. Between grips, an iteration
-  /// that
-  /// fails is repeated with `corrector`.
+  /// that fails is repeated with `corrector`.
   newton,
   /// Converges to an equilibrium near another shape, whose factor serves as the first one; between
   /// grips. If it does not converge within a few steps it ends as `failed`, without a second

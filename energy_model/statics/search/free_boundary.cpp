@@ -8,7 +8,6 @@
 #include <vector>
 
 #include "contact/clearance.hpp"
-#include "contact/update_contacts.hpp"
 
 namespace dlo::energy_model {
 namespace {

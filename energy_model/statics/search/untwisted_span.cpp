@@ -2,9 +2,13 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstddef>
+#include <optional>
 #include <utility>
 
+#include "base/deadline.hpp"
 #include "contact/penalty_polygon.hpp"
+#include "kirchhoff/relaxed_polygon.hpp"
 #include "kirchhoff/rod_mesh.hpp"
 #include "kirchhoff/rod_span.hpp"
 #include "search/contact_search.hpp"

@@ -1,18 +1,13 @@
 #pragma once
 
 #include <Eigen/Core>
-#include <cstddef>
 #include <memory>
-#include <optional>
 #include <vector>
 
-#include "base/deadline.hpp"
 #include "dlo/energy_model/equilibrium.hpp"
 #include "dlo/energy_model/problem.hpp"
-#include "kirchhoff/relaxed_polygon.hpp"
 #include "problem/split.hpp"
 #include "span/span_options.hpp"
-#include "span/span_solver.hpp"
 #include "strain/span_solution.hpp"
 
 namespace dlo::energy_model {

@@ -24,9 +24,9 @@ struct TermSetup {
 };
 
 /// Base of the terms of a span's energy besides that of its strains. A term is a function of the
-/// tangents t at the nodes and, in the plane, of the unknowns x. Its class declares reset() and
-/// evaluate(), and what else it has; this base contributes nothing. SpanEnergy::Terms lists all
-/// terms.
+/// tangents t at the nodes and, in the plane, of the unknowns x. Its class declares reset(),
+/// evaluate() and add_energies(), and each other function whose result is not that of this base.
+/// SpanEnergy::Terms lists all terms.
 struct Term {
   void reset(const TermSetup& setup) = delete;
   /// Adds the energy [EI/l] to at.energy, -dE/dt to at.force and dE/dx at fixed t to at.gradient.
@@ -40,9 +40,9 @@ struct Term {
   ///   unknowns; for tilts out of the plane of a planar span only that of z is not zero
   void add_hessian(const SpanPoint& /*at*/, const std::array<Eigen::MatrixXd, 3>& /*tangents*/,
                    Eigen::Ref<Eigen::MatrixXd> /*hessian*/) const {}
-  /// Adds the couples about the anchor that at.force does not include.
+  /// Adds the couples about the anchor that SpanPoint::force does not include.
   void add_couples(Eigen::Vector3d& /*moment*/) const {}
-  /// Adds the energy to the one of its kind.
+  /// Adds the energy [EI/l] to the member of `energies` for its kind.
   void add_energies(const TermSetup& setup, const SpanPoint& at, Energies& energies) const = delete;
 };
 
