@@ -297,8 +297,8 @@ void require_known_command(const CLI::App& app, const std::string& written) {
   for (const CLI::App* command : commands_of(app)) names.push_back(command->get_name());
   if (std::find(names.begin(), names.end(), written) != names.end()) return;
   throw compare::InputError(
-      fmt::format("unknown command {}{} (allowed: {}; dlo alone says what each is for)", written,
-                  compare::did_you_mean(written, names), fmt::join(names, ", ")));
+      fmt::format("unknown command {}{} (allowed: {}; dlo without arguments describes them)",
+                  written, compare::did_you_mean(written, names), fmt::join(names, ", ")));
 }
 
 void require_known_option(const CLI::App& app, const std::string& written) {

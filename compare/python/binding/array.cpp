@@ -19,7 +19,7 @@ std::string shape_text(const py::array& array) {
 constexpr py::ssize_t most_numbers = 3'000'000;
 
 Numbers numbers_from(py::handle values, const std::string& name) {
-  // Functions that read files have accepted the name of a file before.
+  // Functions that read files accepted the name of a file in earlier versions.
   if (py::isinstance<py::str>(values) || py::hasattr(values, "__fspath__")) {
     throw compare::InputError(fmt::format(
         "{0}: the name of a file (allowed: an array, such as numpy.loadtxt({1}, delimiter=\",\"))",

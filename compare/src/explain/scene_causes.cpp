@@ -204,7 +204,8 @@ SceneCause clamps_for_pins(const Scene& scene, const std::vector<std::size_t>& p
     for (std::size_t k = 0; k < pins.size(); ++k) {
       directions[k] = fmt::format("gripper {} {}", pins[k] + 1, directions[k]);
     }
-    return fmt::format("the pins hold their directions, {}: clamps", fmt::join(directions, ", "));
+    return fmt::format("the pins hold their directions, {}: clamps, not pins",
+                       fmt::join(directions, ", "));
   };
   SceneCause cause = cause_of(held, zeros(count), 1 * degree, 40 * degree, turn, words);
   cause.other_state = true;
@@ -221,7 +222,7 @@ SceneCause pins_for_clamps(const Scene& scene, const std::vector<std::size_t>& c
   const std::string words =
       clamps.size() == 1
           ? fmt::format("gripper {} lets the rod rotate: a pin, not a clamp", clamps[0] + 1)
-          : "the clamps let the rod rotate: pins";
+          : "the clamps let the rod rotate: pins, not clamps";
   SceneCause cause = cause_of(
       free, zeros(0), 0, 0, [](Scene&, const Numbers&) {},
       [words](const Numbers&) { return words; });

@@ -31,10 +31,13 @@ namespace {
 /// one of eleven, five shapes in one of a hundred and one of two thousand.
 constexpr double maybe_common = 0.5;
 constexpr double surely_common = 0.7;
-/// Part of the residual that an alternative may leave to be reported, and to cast doubt on the fit;
-/// part by which an alternative that includes another one must leave less.
+/// Largest RMS residual of an alternative that is reported, divided by that of the fit.
 constexpr double worth_naming = 0.7;
+/// Largest RMS residual of the best alternative that casts doubt on the fit, divided by that of the
+/// fit.
 constexpr double too_much = 0.5;
+/// Smallest reduction of the RMS residual by which an alternative with more parameters must improve
+/// on one that it includes, divided by the residual of the fit.
 constexpr double next_to_nothing = 0.02;
 
 /// Returns the part of the residuals that all shapes have in common; std::nullopt without a plane.
@@ -240,7 +243,7 @@ void find_density(MaterialProfiles& material, const MaterialErrors& errors, Mate
 std::string why_weight_alone(const Scene& scene) {
   return fmt::format(
       "the {0} is not identifiable from these shapes: nothing but gravity bends the rod, so only "
-      "{0} / {1} shows; {1} is for the {0} of the scene (a known load would identify both)",
+      "{0} / {1} is; {1} is computed with the {0} of the scene (a known load would identify both)",
       scene.heaviness().name, scene.stiffness().name);
 }
 

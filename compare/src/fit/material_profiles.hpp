@@ -159,7 +159,7 @@ class MaterialErrors {
   /// @param least  sum of squares at the best material [m^2]
   MaterialErrors(MaterialProfiles& material, const MaterialPoint& best, double least);
 
-  /// Sets noise, correlation and scatter of the result.
+  /// Writes noise, correlation and scatter of the errors into the fit.
   void write_to(MaterialFit& fit) const;
 
   /// Returns the sum of squares at the ends of a number's interval [m^2].

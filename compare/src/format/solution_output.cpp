@@ -133,7 +133,7 @@ std::string solution_text(const compare::Solution& solution, const compare::Scen
     all["self_crossing"]["note"] = "contact of the rod with itself is in no model";
   }
   if (compare::neglects(solution, "friction")) {
-    all["neglected"].push_back("(without friction this is one shape; friction could hold others)");
+    all["neglected"].push_back("(this is the shape without friction; friction could hold others)");
   }
   if (follows_twist(solution)) {
     all["one_branch_followed"] =

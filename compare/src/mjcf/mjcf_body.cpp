@@ -89,14 +89,14 @@ MjcfJoint read_mjcf_joint(const MjcfNode& node, const MjcfPose& at) {
   if (!(joint.stiffness >= 0)) node.fail("stiffness", "(allowed: 0 or more, in N m/rad)");
   joint.is_limited = node.text("range") && node.text("limited").value_or("auto") != "false";
   node.require_zero("springdamper", "makes a stiffness of inertias");
-  node.require_zero("frictionloss", "holds many shapes at rest");
+  node.require_zero("frictionloss", "allows many equilibria");
   if (joint.type == MjcfJoint::Type::hinge) {
     const double rest = node.number("springref").value_or(0);
     const double reference = node.number("ref").value_or(0);
     if (rest != reference) {
       node.fail("springref",
-                fmt::format("is another angle than ref = {:g}: bent where it is free of stress "
-                            "(allowed: the same; or the bodies posed as that shape)",
+                fmt::format("differs from ref = {:g}: the joint is bent in its stress-free state "
+                            "(allowed: springref = ref, or bodies posed stress-free)",
                             reference));
     }
   }

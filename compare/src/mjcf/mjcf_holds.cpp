@@ -90,7 +90,7 @@ class HoldFinder {
   bool add(const MjcfNode& constraint) {
     const std::string_view kind = constraint.element.name();
     if (kind != "weld" && kind != "connect") {
-      constraint.fail("in <equality> cannot be said by a rod's scene (allowed: weld, connect)");
+      constraint.fail("in <equality> has no counterpart in a rod's scene (allowed: weld, connect)");
     }
     constraint.require_known();
     if (constraint.choice("active", {"true", "false"}) == 1) return false;
@@ -129,7 +129,7 @@ class HoldFinder {
     const auto a = chain_.segment_of(first.body);
     const auto b = chain_.segment_of(second.body);
     if (a.has_value() == b.has_value()) {
-      constraint.fail(a ? "joins the cable with itself (allowed: with what does not move)"
+      constraint.fail(a ? "joins the cable with itself (allowed: with a fixed body)"
                         : "does not hold the cable (allowed: a body of it, and one that "
                           "does not move)");
     }
@@ -191,8 +191,8 @@ class HoldFinder {
     const double slack = on_axis * segment.length();
     if (across > slack || along < -slack || along > segment.length() + slack) {
       constraint.fail(
-          fmt::format("holds {} at a place that is not on its segment: {:.4g} m along it, "
-                      "{:.4g} m off (allowed: 0 to {:.4g} m, 0 off)",
+          fmt::format("holds {} at a point off its segment: {:.4g} m along it, {:.4g} m away "
+                      "(allowed: 0 to {:.4g} m along it, 0 away)",
                       quoted_piece(body_of(k).name), along, across, segment.length()));
     }
     hold.at = std::clamp(segment.at + along, 0.0, chain_.length);

@@ -20,13 +20,13 @@ namespace dlo::compare {
 /// Returns the masses of a scene's rod, of its sections and of what hangs on it.
 [[nodiscard]] energy_model::Inertia scene_inertia(const Scene& scene);
 
-/// Returns a gripper's trajectory as a motion of the energy model, whose time is zero at `begin`
-/// [s]. Its rotation is relative to the pose at `begin`, along great circles and with the rolls.
-/// Accelerations jump at poses. At a pose, up to rounding of the time, they are those before it;
-/// just after it, they are those after it.
+/// Returns the motion of a gripper along a trajectory. Time 0 of the motion is `begin` [s]. The
+/// rotation is relative to the pose at `begin`; directions follow great circles. Accelerations jump
+/// at a pose: at the time of the pose, up to rounding, they are those of the leg before it, and
+/// later those of the leg after it.
 /// @param way          trajectory with poses
-/// @param rolls_about  direction at `begin` of a clamp that holds the rod's frame; empty for
-/// others, whose rolls have no effect
+/// @param rolls_about  direction at `begin` of a clamp that holds the rod's frame; empty for any
+/// other gripper, for which rolls have no effect
 [[nodiscard]] energy_model::GripMotion trajectory_motion(
     const Trajectory& way, double begin,
     const std::optional<Eigen::Vector3d>& rolls_about = std::nullopt);

@@ -52,8 +52,8 @@ void read_rest_shape(StrictTable& rod, const std::vector<StrictTable>& sections,
   if (!rod.has("rest_shape")) return;
   for (const StrictTable& section : sections) {
     section.refuse({"natural_curvature", "natural_twist"},
-                   "given besides rod.rest_shape, which defines it along the whole rod (allowed: "
-                   "one of the two)");
+                   "given in addition to rod.rest_shape, which defines it along the whole rod "
+                   "(allowed: one of the two)");
   }
   try {
     scene.set_rest_shape(fit_rest_shape(read_rest_points(rod, scene.file), scene.length));

@@ -92,8 +92,8 @@ Eigen::MatrixXd moments_of_end(const Eigen::Matrix3Xd& points, Eigen::Index unkn
 
 /// Returns EI kappa of the inner joints, without the joints adjacent to the ends: there discrete
 /// springs depend on the assumed position of the clamp. With another power the moments are
-/// proportional to that power of 2 sin(angle / 2), and equal EI kappa at the joint with the largest
-/// angle.
+/// EI / h c_max (c / c_max)^power, where c = 2 sin(angle / 2), c_max is its largest value and h the
+/// joint's length.
 Eigen::VectorXd bending_moments(const Scene& scene, const Shape& shape, double power) {
   const Eigen::Index n = shape.points.cols() - 1;
   Eigen::VectorXd moments = Eigen::VectorXd::Zero(3 * (n - 1));

@@ -138,8 +138,8 @@ double WireProblem::least_noise() const { return own_error * scenes.front().leng
 
 void WireProblem::descend(GaussNewton& fit) const {
   if (fit.descend()) return;
-  throw ConvergenceError(
-      fmt::format("{}: the energy model has no shape beside the fitted one", scenes.front().file));
+  throw ConvergenceError(fmt::format("{}: the energy model has no equilibrium near the fitted one",
+                                     scenes.front().file));
 }
 
 Eigen::MatrixXd covariance_of_numbers(const WireErrors& errors, const GaussNewton& fit,
