@@ -6,7 +6,7 @@
 
 #include "base/quote.hpp"
 #include "base/text.hpp"
-#include "batch/junit.hpp"
+#include "batch/regression.hpp"
 #include "format/result_output.hpp"
 #include "option/output.hpp"
 #include "series/study_output.hpp"
