@@ -133,8 +133,8 @@ class Part(Strict):
         for name, value in table.items():
             key = name if name in known else {"start": "from", "end": "to"}.get(name, name)
             if key not in known:
-                near = _dlo.did_you_mean(key, known)
-                name = f"{self._name}.{key}"
+                near = _dlo.did_you_mean(name, known)
+                name = f"{self._name}.{name}"
                 raise InputError(f"scene: {name}: unknown key{near} (allowed: {', '.join(known)})", name)
             if value is not None:
                 self._table[key] = copied(key, value)
