@@ -290,9 +290,7 @@ class Chain {
 
   /// Whether no held point is moved to where its neighbour in the file is.
   [[nodiscard]] bool parts_points() const {
-    const Eigen::Matrix3Xd points = start();
-    const Eigen::Index n = points.cols() - 1;
-    return (points.rightCols(n) - points.leftCols(n)).colwise().norm().minCoeff() > 0;
+    return chord_lengths(start()).minCoeff() > 0;
   }
 
   void lay_out() {
