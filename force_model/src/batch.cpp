@@ -18,7 +18,7 @@ void require_common_kernel(const std::vector<BatchRod>& rods) {
   const BatchRod& first = rods.front();
   const auto require_same = [](bool same, std::string_view what, std::size_t index) {
     require(same, "Batch", what, static_cast<double>(index),
-            "that of a rod that agrees with the first in this");
+            "the index of a rod that agrees with the first rod in this");
   };
   for (std::size_t i = 0; i < rods.size(); ++i) {
     const BatchRod& rod = rods[i];

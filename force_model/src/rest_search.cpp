@@ -116,8 +116,8 @@ Eigen::Matrix3Xd RestSearch::check_rest(const MovingShape& shape) {
   if (check.stable && (check.proven || seems_at_rest)) slowest_mode_ = check.slowest_mode;
   // Without a proof, as with a contact that opens and closes, the motion is damped all the same.
   const double nearly = rod_.touches_anything() ? 100 : 1;
-  // Shapes that only creep without momentum need it: there is no new descent after one that did not
-  // halve the distance.
+  // The steps of a descent have no momentum. A shape that only creeps in such steps needs momentum,
+  // so no further descent follows one that did not halve the distance from rest.
   constexpr double helps = 0.5;
   bounces_ = due && check.stable && check.remaining_error < nearly * target_ &&
              check.remaining_error < helps * descended_from_;

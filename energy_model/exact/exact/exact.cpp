@@ -97,7 +97,7 @@ void refuse_passed_torque(const Problem& problem) {
   for (auto g = first; g < last; ++g) {
     require(!g->grip->direction || holds(*g), "solve_exact",
             "arc length of a clamp without a frame between two clamps with frames", g->grip->at,
-            "that of a clamp with a frame or of a pin");
+            "the arc length of a clamp with a frame or of a pin");
   }
 }
 

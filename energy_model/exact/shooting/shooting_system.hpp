@@ -155,7 +155,7 @@ class ShootingSystem {
   std::vector<Share> shares_;             // share of each interval; empty: no arc length is unknown
 };
 
-/// Outcome of Newton's method.
+/// Outcome of close_gaps(), which solves the equations of multiple shooting by Newton's method.
 struct [[nodiscard]] ClosedGaps {
   bool converged = false;
   std::string message = "Newton's method reached its iteration limit";

@@ -30,8 +30,8 @@ class TautLine {
       require(held.direction->normalized().cross(line_).norm() <= line_rounding &&
                   held.direction->dot(line_) > 0,
               "Problem", "arc length of a clamp of a taut rod", held.at,
-              "that of a clamp whose direction is along the line of the grips, which hold the "
-              "whole rod straight");
+              "the arc length of a clamp whose direction is along the line of the grips, which "
+              "hold the whole rod straight");
     }
   }
 
@@ -96,8 +96,8 @@ class TautLine {
     const std::optional<std::size_t> clamp = clamp_under(problem_, load);
     require(clamp || load.torque.isZero(0), "Problem", "arc length of a couple on a taut rod",
             load.at,
-            "that of a clamp: the share of each grip in a couple depends on the tension, which is "
-            "undetermined in an inextensible rod");
+            "the arc length of a clamp: the share of each grip in a couple depends on the tension, "
+            "which is undetermined in an inextensible rod");
     if (clamp) result_.grips[*clamp].torque -= load.torque;
     for (std::size_t i = 0; i < along_.size(); ++i) {
       if (std::abs(load.at - grip(i).at) > line_rounding * problem_.length) continue;

@@ -24,7 +24,7 @@ void check_frame(const Grip& grip) {
   constexpr double least_across = 1e-6;
   require(grip.direction.has_value(), "Problem",
           "arc length of a grip with a frame but no direction", grip.at,
-          "that of a clamp, which has a direction");
+          "the arc length of a clamp, which has a direction");
   require_finite("Problem", "roll of a clamp", grip.frame->roll);
   if (!grip.frame->d1) return;
   const double across = grip.frame->d1->cross(*grip.direction).norm();
@@ -118,9 +118,8 @@ void require_dead_loads(const Problem& problem, const char* function) {
   require(!problem.drag, function, "drag", problem.drag ? 1 : 0,
           "omitted: drag has no potential (only solve_exact() supports it)");
   for (const Load& load : problem.loads) {
-    require(
-        !load.follows, function, "arc length of a follower load", load.at,
-        "that of a dead load: a follower load has no potential (only solve_exact() supports it)");
+    require(!load.follows, function, "arc length of a follower load", load.at,
+            "no follower load: it has no potential (only solve_exact() supports it)");
   }
 }
 

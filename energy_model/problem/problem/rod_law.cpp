@@ -166,7 +166,8 @@ Eigen::Vector3d natural_strain(const Problem& problem, double arc_length) {
 }
 
 std::optional<Eigen::Vector3d> natural_normal(const Problem& problem) {
-  // find_plane() needs one direction, and all others at the same scale.
+  // find_plane() takes one vector as the direction of the rod and compares the others with the
+  // largest of them, so all are scaled to unit length.
   std::vector<Eigen::Vector3d> directions;
   const auto add = [&](const Eigen::Vector3d& v, double unit) {
     if (v.norm() > 1e-9 * unit) directions.push_back(v.normalized());
@@ -227,9 +228,11 @@ Eigen::Matrix3d first_frame(const Problem& problem) {
   const Grip& clamp = problem.grips.at(first_clamp(problem).value());
   if (clamp.frame && clamp.frame->d1) return held_frame(clamp, *clamp.frame->d1);
   const std::optional<Eigen::Vector3d> normal = natural_normal(problem);
-  require(normal.has_value(), "Problem", "arc length of the first clamp, whose frame lacks d1",
-          clamp.at,
-          "that of a clamp with d1: the rod is not both round and straight, and lies in no plane");
+  require(
+      normal.has_value(), "Problem", "arc length of the first clamp, whose frame lacks d1",
+      clamp.at,
+      "the arc length of a clamp with d1: the rod is not both round and straight, and lies in no "
+      "plane");
   return held_frame(clamp, normal->cross(*clamp.direction));
 }
 

@@ -66,7 +66,8 @@ void require_inextensible(const Problem& problem, std::string_view function);
 /// Returns the strains of the stress-free shape at an arc length [1/m].
 [[nodiscard]] Eigen::Vector3d natural_strain(const Problem& problem, double arc_length);
 
-/// Returns the frame (columns d1, d2, t) of a clamp that has this d1 before its roll is applied.
+/// Returns the frame (columns d1, d2, t) of a clamp: t is the clamp's direction, and d1 is the
+/// given one, made orthogonal to t and rotated about t by the clamp's roll.
 [[nodiscard]] Eigen::Matrix3d held_frame(const Grip& clamp, const Eigen::Vector3d& d1);
 
 struct OrderedGrip {

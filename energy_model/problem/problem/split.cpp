@@ -30,7 +30,8 @@ struct Directions {
 };
 
 void choose_frame(PlacedSpan& placed, const Directions& directions) {
-  // find_plane() needs the first direction and all others at the same scale.
+  // find_plane() takes one vector as the direction of the rod and compares the others with the
+  // largest of them, so directions of grips have length 1 and forces at most length 1.
   Eigen::Vector3d first = Eigen::Vector3d::UnitX();
   std::vector<Eigen::Vector3d> others;
   others.reserve(directions.forces.size() + directions.grips.size());

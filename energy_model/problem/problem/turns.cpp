@@ -67,7 +67,7 @@ Eigen::Vector3d reference_d1(const Problem& problem, const Grip& clamp) {
 
 Eigen::Vector3d held_d1(const Problem& problem, const Grip& grip) {
   require(grip.direction && grip.frame, "held_d1", "arc length of a grip without a frame", grip.at,
-          "that of a clamp with a frame");
+          "the arc length of a clamp with a frame");
   if (grip.frame->d1) return part_across(*grip.frame->d1, grip.direction->normalized());
   const Grip& first = reference_clamp(problem);
   Eigen::Vector3d d1 = reference_d1(problem, first);
@@ -76,7 +76,7 @@ Eigen::Vector3d held_d1(const Problem& problem, const Grip& grip) {
   require(rotation.has_value(), "Problem",
           "arc length of a clamp whose frame lacks d1 and whose direction is opposite to that of "
           "the first clamp, in line with it",
-          grip.at, "that of a clamp with d1");
+          grip.at, "the arc length of a clamp with d1");
   return *rotation * d1;
 }
 

@@ -106,9 +106,12 @@ std::optional<Eigen::Vector3d> side_of_path(const Span& span, const obstacle::Bo
   return side.normalized();
 }
 
-/// Returns the points of a path past a body: one next to its middle and, for a free end, one at its
-/// far corner, from where the rod hangs clear of the body.
-/// @param from  last point of the path so far;  @param sense  1 or -1: the side
+/// Returns the points of a path that passes a body on one side. The first point is next to the
+/// middle of the body. If the rod ends free, a second point follows at the far corner of the body,
+/// from where the rod hangs clear of it. Returns std::nullopt if the path has no direction, or if
+/// the body is endless along the path or on two axes.
+/// @param from  last point of the path before the body
+/// @param sense  1 to pass on the side of side_of_path(), -1 to pass on the opposite side
 std::optional<PathPoints> past(const Span& span, const obstacle::Body& body, const Reach& reach,
                                const Eigen::Vector3d& from, double sense) {
   const Eigen::Vector3d near = reach.is_closed ? (reach.from + reach.to) / 2 : reach.from;

@@ -105,14 +105,14 @@ class SpanReach {
   [[nodiscard]] Eigen::Index points() const { return weights_.size(); }
   /// Number of points of one element.
   [[nodiscard]] Eigen::Index piece_points() const { return pieces_.front().points(); }
-  /// Returns the index of the first point of an element; for the number of elements, of the span's
-  /// end.
+  /// Returns the index of the first point of an element. If `piece` is the number of elements,
+  /// returns the index of the point at the end of the span.
   [[nodiscard]] Eigen::Index begin(Eigen::Index piece) const {
     return std::min(piece * piece_points(), points() - 1);
   }
   /// Weights of the span's quadrature at the points; 0 at begins and ends of elements.
   [[nodiscard]] const Eigen::VectorXd& weights() const { return weights_; }
-  /// Returns weights() times a quantity per length that is constant on each element.
+  /// Returns weights(), each multiplied by a quantity per length that is constant on each element.
   [[nodiscard]] Eigen::VectorXd weighed(const std::vector<double>& per_length) const;
   /// Returns Reach^T A, points x columns of A. @param by_node  A, nodes x columns
   [[nodiscard]] Eigen::MatrixXd sums(const Eigen::MatrixXd& by_node) const;

@@ -210,8 +210,8 @@ std::array<Eigen::MatrixXd, 3> SpanEnergy::tangent_jacobian(SpanPoint& at) const
   return span_.planar ? plane_.tangent_jacobian(at.plane) : frames_.tangent_jacobian(at.frames);
 }
 
-/// Computes at.along: weight of the node times n.t - B kappa^2, the second variation's coefficient
-/// of a squared tilt out of the plane.
+/// Computes at.along: the quadrature weight of the node, multiplied by (n.t - B kappa^2). This is
+/// the coefficient of a squared tilt out of the plane in the second variation.
 void SpanEnergy::carry_tilts(SpanPoint& at,
                              const Eigen::Ref<const Eigen::VectorXd>& multipliers) const {
   carry(at, multipliers);

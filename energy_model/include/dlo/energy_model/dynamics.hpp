@@ -49,7 +49,9 @@ using StartingVelocities = std::function<Eigen::Matrix3Xd(std::span<const double
 
 /// Energies of a moving rod at one time, and the work and losses up to that time [J].
 struct EnergyBalance {
-  double kinetic = 0;  ///< kinetic energy of the points
+  /// Kinetic energy of the mass and, if the rod has twist, of the small inertia that the simulation
+  /// assigns to twist.
+  double kinetic = 0;
   double bending = 0;  ///< bending energy int 1/2 EI kappa^2 ds, of strains beyond the natural ones
   double twisting = 0;  ///< twisting energy int 1/2 GJ u3^2 ds, of twist beyond the natural one
   /// Potential of weight and line loads. It is zero at the position that the first clamp along the
