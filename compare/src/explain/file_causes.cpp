@@ -59,8 +59,9 @@ std::vector<std::pair<std::string, double>> units_for(const MeasuredShape& shape
   return units;
 }
 
-/// Calls `look` for a file in this unit and these axes: with or without missing ends, at its place
-/// or translated. Only combinations with at least two errors are used.
+/// Calls `look` for each combination of errors of a file: this unit and these axes, which may be
+/// right or wrong, with or without missing ends, and with or without a translation. Combinations of
+/// fewer than two errors are skipped.
 void look_at_poses(const std::string& unit, const FileAxes& axes, const MeasuredShape& in_metres,
                    bool lacks_ends, const std::function<void(const FileCause&)>& look) {
   const int changed = (unit.empty() ? 0 : 1) + (axes.words.empty() ? 0 : 1);

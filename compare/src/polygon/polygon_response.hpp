@@ -24,8 +24,9 @@ inline constexpr int rod_points = 97;
 /// Changes of an equilibrium by stretch, to first order.
 struct StretchResponse {
   double moved_m = 0;  ///< RMS displacement along the rod [m]
-  /// Change of the tension where its size is largest, divided by that tension; NaN without an
-  /// answer or without tension [-].
+  /// Change of the tension by stretch in the segment where the tension (or compression) is largest,
+  /// divided by this tension [-]. NaN if the response cannot be computed or if no segment carries
+  /// tension.
   double tension = 0;
 };
 

@@ -87,7 +87,8 @@ Measured measure(const Alignment& alignment, const Reference& reference, double 
     const double covered = s.back() - s.front();
     const double longer = std::max(0.0, polyline_length(shape.points) - covered);
     const double past = before.front() + after.back();
-    // Points of a different shape with the right length lie past the end as well.
+    // The points exceed the rod only by the length that the polyline has in addition. Points of a
+    // different shape with the length of the rod lie past an end as well.
     const double share = past > longer ? longer / past : 1;
     result.excess_at_start_m = share * before.front();
     result.excess_at_end_m = share * after.back();

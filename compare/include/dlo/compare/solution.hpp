@@ -142,7 +142,8 @@ struct Solution {
   std::vector<Linking> linking;
   /// Effects that the scene has and the model neglects: "twist", "natural curvature", "friction"
   /// (if the rod touches an obstacle with friction; in Comparison if either model does), "stretch"
-  /// (of energy and exact, if solve() finds that it matters).
+  /// (of energy and exact, if solve() finds that it matters; of chain, if the scene asks for a rod
+  /// that stretches).
   std::vector<std::string> neglected;
   /// Estimated effect of stretch, of energy and exact, from solve() and solve_all(). It refers to
   /// the shape without stretch, also if the estimate led to a solution with stretch.
