@@ -21,8 +21,9 @@ inline JointMoment binormal_moment(double angle) {
   return {2 * t * (1 + t * t), (1 + t * t) * (1 + 3 * t * t)};
 }
 
-/// Points of a planar chain at rest, by Newton's method in its segments' angles with growing loads:
-/// nothing of the library's polygons. The first segment is held along +x.
+/// Computes the points of a planar chain at rest by Newton's method in the angles of its segments,
+/// with growing loads and without code of the library's polygons. The first segment is held along
+/// +x.
 /// @param segments  lengths [m], n;  @param springs  of the joints [N m], n - 1
 /// @param forces  on the points [N], 2 x (n + 1)
 template <typename Moment>

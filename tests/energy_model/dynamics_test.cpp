@@ -371,7 +371,7 @@ TEST(Dynamics, AClampThatStartsAtOnceStrikesTheRod) {
   rod.breaks = {0.1};
   const Dynamics result =
       run(rod, straight_rod(Vector3d::UnitX()), {0.1, 0.101, 0.2}, {.terms = 8});
-  // Only the clamp's end has moved.
+  // At first only the part of the rod near the clamp moves.
   EXPECT_LT(result.frames[0].energy.kinetic, 0.05 * 0.5 * velocity.squaredNorm());
   EXPECT_LT(std::abs(tip(result.frames[1]).y()), 1e-4);
   EXPECT_LT(result.energy_error, 1e-6);

@@ -284,7 +284,8 @@ TEST(ExactContact, NoObstacleIsConfirmedToPull) {
   };
   const Equilibrium alone = solve_energy(heavy_cantilever(0.3, 0));
   const Samples at = alone.sample(std::vector<double>{0.7, 1});
-  // The highest point of a peg below a slope is farther from it than the point next to it.
+  // The highest point of a peg below an inclined rod is farther from the rod than the point of the
+  // peg nearest to the rod.
   const double aside = 0.1 * (1 / at.tangents(0, 0) - 1);
   for (const bool peg : {false, true}) {
     const double free = peg ? at.points(1, 0) - aside : at.points(1, 1);

@@ -127,7 +127,9 @@ struct Tally {
 /// A shape whose forces and torques do not balance to this is no equilibrium.
 constexpr double largest_defect = 1e-6;
 
-/// @return how many scenes must not be as they are
+/// Solves random scenes by both models and prints a summary and each fault.
+/// @return number of scenes with a fault: results that contradict each other, forces and torques
+/// that do not balance, or a solve that exceeds the time limit
 int run(const Options& options, RandomSpace space, std::uint64_t count) {
   const char* kind = dlo::test::name_of(space);
   if (count == 0) return 0;

@@ -79,7 +79,7 @@ TEST(UnlikeJoints, EqualStiffnessesAreOneStiffness) {
   }
 }
 
-/// A polygon whose joints are turned as given, in the plane z = 0.
+/// Returns the points of a polygon in the plane z = 0 with the given angles at its joints [rad].
 Eigen::Matrix3Xd turned_polygon(const Eigen::VectorXd& rest, const Eigen::VectorXd& at_joints) {
   Eigen::Matrix3Xd points = Eigen::Matrix3Xd::Zero(3, rest.size() + 1);
   double angle = 0.3;

@@ -128,7 +128,8 @@ TEST_F(MotionCommand, MeasuredPosesAreSmoothedBelowTheirCutoff) {
   const json document = json_of(
       words({"track", path("smooth.toml"), "--no-force --from 0.5 --to 1.5 --frame-rate 37"}));
   for (const json& frame : document.at("frames")) {
-    // A gain of 0.001 is left of it: 1 / (1 + (sqrt(2) - 1) / sin(pi / 20)^4).
+    // The filter reduces the alternating error of the rows by the gain 1 / (1 + (sqrt(2) - 1) /
+    // sin(pi / 20)^4), about 0.001.
     EXPECT_NEAR(frame.at("grippers").at(0).at("position_m").at(0),
                 0.1 * frame.at("time_s").get<double>(), 2e-6);
   }

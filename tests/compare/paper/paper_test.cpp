@@ -63,7 +63,8 @@ TEST(PaperReport, MeasuresTheEffectiveModulusAtRestAndOnTheWay) {
       EXPECT_EQ(at.steps, static_cast<long>(at.time_s * report.steps_per_second));
       previous = at.modulus.ratio;
     }
-    // Far from rest the joints fall freely: E*/E is proportional to 1/t.
+    // Far from rest the joints hardly resist bending, so the deflection grows in proportion to the
+    // time t, and E*/E is proportional to 1/t.
     EXPECT_NEAR(entry.creep[1].modulus.ratio * 2 / entry.creep[0].modulus.ratio, 1, 0.05);
   }
   ASSERT_EQ(report.variants.size(), 17U);
