@@ -195,9 +195,9 @@ void twisted(benchmark::State& state) {
 }
 BENCHMARK(twisted)->Arg(60)->Arg(180)->Unit(benchmark::kMicrosecond);
 
-/// 300 random rods between clamps, each solved once: the time of the median and of the slowest in
-/// plain steps, and how many are certified.
-void random_between(benchmark::State& state, dlo::test::RandomSpace space, bool pin) {
+/// Solves 300 random rods between clamps once each. Reports the median and the largest time in
+/// plain steps, and the number of certified results.
+void random_clamped_rods(benchmark::State& state, dlo::test::RandomSpace space, bool pin) {
   constexpr std::uint64_t count = 300;
   const double step = plain_step();
   std::vector<double> steps;
@@ -219,16 +219,16 @@ void random_between(benchmark::State& state, dlo::test::RandomSpace space, bool 
   state.counters["slowest"] = steps.back();
   state.counters["certified"] = certified;
 }
-BENCHMARK_CAPTURE(random_between, clamps_planar, dlo::test::RandomSpace::plane, false)
+BENCHMARK_CAPTURE(random_clamped_rods, clamps_planar, dlo::test::RandomSpace::plane, false)
     ->Unit(benchmark::kMillisecond);
-BENCHMARK_CAPTURE(random_between, clamps_spatial, dlo::test::RandomSpace::space, false)
+BENCHMARK_CAPTURE(random_clamped_rods, clamps_spatial, dlo::test::RandomSpace::space, false)
     ->Unit(benchmark::kMillisecond);
-BENCHMARK_CAPTURE(random_between, clamps_and_pin_planar, dlo::test::RandomSpace::plane, true)
+BENCHMARK_CAPTURE(random_clamped_rods, clamps_and_pin_planar, dlo::test::RandomSpace::plane, true)
     ->Unit(benchmark::kMillisecond);
-BENCHMARK_CAPTURE(random_between, clamps_and_pin_spatial, dlo::test::RandomSpace::space, true)
+BENCHMARK_CAPTURE(random_clamped_rods, clamps_and_pin_spatial, dlo::test::RandomSpace::space, true)
     ->Unit(benchmark::kMillisecond);
 
-/// Error and time against K.
+/// Measures the error and the time of one solve against the number of terms K.
 void terms(benchmark::State& state, double gamma) {
   const Problem problem = clamp(gamma);
   EnergySolver solver({.terms = static_cast<int>(state.range(0))});

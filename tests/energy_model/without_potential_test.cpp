@@ -120,7 +120,7 @@ Eigen::Vector3d tip_tangent_of(const Equilibrium& shape) {
   return test::sample_at(shape, 1).tangents.col(0);
 }
 
-Problem held_along(const Eigen::Vector3d& direction) {
+Problem cantilever_along(const Eigen::Vector3d& direction) {
   Problem problem = heavy_cantilever(0, 0);
   problem.grips[0].direction = direction.normalized();
   return problem;
@@ -201,7 +201,7 @@ TEST(WithoutPotential, ACoupleAcrossAClampInAnyPlaneRollsTheRodUp) {
   const Eigen::Vector3d direction = Eigen::Vector3d(1, -2, 0.5).normalized();
   const Eigen::Vector3d axis = direction.cross(Eigen::Vector3d(0.3, 0.2, 1)).normalized();
   for (const double lambda : {0.8, 2.0}) {
-    Problem problem = held_along(direction);
+    Problem problem = cantilever_along(direction);
     problem.loads = {{1, {0, 0, 0}, lambda * pi * axis}};
     const Equilibrium result = test::usable(solve_exact(problem));
     const double angle = lambda * pi;
@@ -223,7 +223,7 @@ TEST(WithoutPotential, ACoupleAcrossAClampInAnyPlaneRollsTheRodUp) {
 TEST(WithoutPotential, AnObliqueCoupleWindsTheRodIntoAHelix) {
   // Without forces m is the couple everywhere, and t turns about it at the rate |m|.
   const Eigen::Vector3d direction = Eigen::Vector3d(1, 0.3, -0.4).normalized();
-  Problem problem = held_along(direction);
+  Problem problem = cantilever_along(direction);
   // A helix alone lies in no plane: two couples about different axes.
   const Eigen::Vector3d first(6, -3, 4);
   const Eigen::Vector3d last(-2, 5, 7);
@@ -254,7 +254,7 @@ TEST(WithoutPotential, LoadsThatFollowInSpaceTwistAndBendEveryRod) {
   const Eigen::Vector3d torque(0.4, 0.9, -1.1);
   const Eigen::Vector3d direction = Eigen::Vector3d(0.2, 1, -0.7).normalized();
   for (const double second : {1.0, 2.5}) {
-    Problem problem = held_along(direction);
+    Problem problem = cantilever_along(direction);
     problem.torsional_stiffness = 0.6;
     if (second != 1) problem.bending_stiffness_2 = second;
     problem.grips[0].frame = FrameHold{.d1 = Eigen::Vector3d(1, 0.1, 0.3), .roll = 0.4};
@@ -277,7 +277,7 @@ TEST(WithoutPotential, DragAlongAndAcrossWithWeightIsThatOfAnIntegrationFromTheT
   for (const Eigen::Vector3d& velocity :
        {Eigen::Vector3d(1.5, 0, 0), Eigen::Vector3d(-1, 0.5, 2)}) {
     const Drag drag{velocity, 2.5, 0.8};
-    Problem problem = held_along(direction);
+    Problem problem = cantilever_along(direction);
     problem.weight_per_length = {0, -4, 0};
     problem.drag = drag;
     const Equilibrium result = solve_exact(problem);
@@ -291,7 +291,7 @@ TEST(WithoutPotential, DragAlongAndAcrossWithWeightIsThatOfAnIntegrationFromTheT
 
 TEST(WithoutPotential, DirectorsStayWhereThePlaneWithAllLoadsSays) {
   // Only the stream determines that d2 is along y: the strip bends about it.
-  Problem problem = held_along({1, 0, 0});
+  Problem problem = cantilever_along({1, 0, 0});
   problem.torsional_stiffness = 0.6;
   problem.bending_stiffness_2 = 3;
   problem.drag = Drag{{0, 0, -1.5}, 2, 0};

@@ -142,7 +142,7 @@ double NewtonIteration::residual() {
 }
 
 NewtonIteration::Outcome NewtonIteration::advance() {
-  if (step_.factor_of() == NewtonStep::FactorOf::nothing) {
+  if (step_.factor_point() == NewtonStep::FactorPoint::nothing) {
     step_.factor();
     step_is_next_ = false;
   }
@@ -164,7 +164,7 @@ NewtonIteration::Outcome NewtonIteration::advance() {
 /// Decides what to do after a step that no shortening made acceptable and that has been undone.
 NewtonIteration::Outcome NewtonIteration::judge_standstill(double moved) {
   const bool small = is_at_rounding();
-  const bool is_own = step_.factor_of() == NewtonStep::FactorOf::this_point;
+  const bool is_own = step_.factor_point() == NewtonStep::FactorPoint::this_point;
   // Only rounding is left; its component along a near-null mode has no meaning.
   if (small && moved > coarsest_step && !step_.is_minimum() && is_own) {
     step_.solve_by_least_squares();

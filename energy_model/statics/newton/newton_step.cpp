@@ -69,14 +69,14 @@ void NewtonStep::borrow() {
   } else {
     return;
   }
-  factor_of_ = FactorOf::neighbour;
+  factor_point_ = FactorPoint::neighbour;
 }
 
 void NewtonStep::factor() {
   factor_.reset();
   buffers_.factors.factor_at(solution_, *buffers_.here, options_.load);
   factor_ = solution_.factor;
-  factor_of_ = FactorOf::this_point;
+  factor_point_ = FactorPoint::this_point;
   buffers_.broyden.clear();
   if (options_.method == NewtonMethod::corrector && !is_minimum()) find_near_null_modes();
 }

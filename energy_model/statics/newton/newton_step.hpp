@@ -11,7 +11,7 @@ namespace dlo::energy_model {
 class NewtonStep {
  public:
   /// Point at which the factor was computed.
-  enum class FactorOf { nothing, this_point, earlier_point, neighbour };
+  enum class FactorPoint { nothing, this_point, earlier_point, neighbour };
 
   /// All arguments have to outlive the object.
   NewtonStep(SpanSolution& solution, const NewtonOptions& options, NewtonBuffers& buffers)
@@ -21,15 +21,16 @@ class NewtonStep {
   void borrow();
   /// Factors at the present solution.
   void factor();
-  [[nodiscard]] FactorOf factor_of() const { return factor_of_; }
+  /// Returns the point at which the current factor was computed.
+  [[nodiscard]] FactorPoint factor_point() const { return factor_point_; }
   /// Whether the factor belongs to another shape.
-  [[nodiscard]] bool is_borrowed() const { return factor_of_ == FactorOf::neighbour; }
+  [[nodiscard]] bool is_borrowed() const { return factor_point_ == FactorPoint::neighbour; }
   /// Keeps the factor for one more step after the solution has moved.
   void reuse() {
-    if (!is_borrowed()) factor_of_ = FactorOf::earlier_point;
+    if (!is_borrowed()) factor_point_ = FactorPoint::earlier_point;
   }
   /// Discards the factor, so that the next step gets a factor of its own point.
-  void give_up_factor() { factor_of_ = FactorOf::nothing; }
+  void give_up_factor() { factor_point_ = FactorPoint::nothing; }
 
   void solve();
   /// Computes the minimum-norm step.
@@ -60,7 +61,7 @@ class NewtonStep {
   const NewtonOptions& options_;
   NewtonBuffers& buffers_;
   std::shared_ptr<NewtonFactor> factor_;
-  FactorOf factor_of_ = FactorOf::nothing;
+  FactorPoint factor_point_ = FactorPoint::nothing;
 };
 
 }  // namespace dlo::energy_model
