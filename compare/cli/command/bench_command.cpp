@@ -53,7 +53,7 @@ void run(const BenchOptions& options) {
 
 }  // namespace
 
-void add_bench(CLI::App& app) {
+void add_bench_command(CLI::App& app) {
   add_command<BenchOptions>(app, "bench", run, [](Command& command, BenchOptions& o) {
     command.bind("SCENE", o.scenes, "--seconds", o.benchmark.budget_s, "--repeats",
                  o.benchmark.repeats, "--speed", o.benchmark.gripper_speed, "--with", o.programs,

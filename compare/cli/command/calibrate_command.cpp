@@ -252,7 +252,7 @@ void run_force_model(const CalibrateOptions& options, bool points_are_given, boo
 
 }  // namespace
 
-void add_calibrate(CLI::App& app) {
+void add_calibrate_command(CLI::App& app) {
   const auto options = std::make_shared<CalibrateOptions>();
   CalibrateOptions& o = *options;
   Command command(app, "calibrate");

@@ -119,7 +119,7 @@ void run_motion(const CheckOptions& options) {
 
 }  // namespace
 
-void add_check(CLI::App& app) {
+void add_check_command(CLI::App& app) {
   add_command<CheckOptions>(
       app, "check",
       [](const CheckOptions& options) {

@@ -7,26 +7,27 @@ namespace dlo::cli {
 // Each function adds its command to the application, which runs it when it is chosen. Errors are
 // exceptions; report_exception() turns them into messages and exit statuses. A result outside a
 // tolerance is printed first, then end_with(ExitStatus::outside_tolerance) is called.
-void add_init(CLI::App& app);
-void add_materials(CLI::App& app);
-void add_solve(CLI::App& app);
-void add_compare(CLI::App& app);
-void add_check(CLI::App& app);
-void add_calibrate(CLI::App& app);
-void add_paper(CLI::App& app);
-void add_bench(CLI::App& app);
-void add_stability(CLI::App& app);
-void add_regress(CLI::App& app);
-void add_scene(CLI::App& app);
-void add_sweep(CLI::App& app);
-void add_modes(CLI::App& app);
-void add_suite(CLI::App& app);
-void add_track(CLI::App& app);
+void add_init_command(CLI::App& app);
+void add_materials_command(CLI::App& app);
+void add_solve_command(CLI::App& app);
+void add_compare_command(CLI::App& app);
+void add_check_command(CLI::App& app);
+void add_calibrate_command(CLI::App& app);
+void add_paper_command(CLI::App& app);
+void add_bench_command(CLI::App& app);
+void add_stability_command(CLI::App& app);
+void add_regress_command(CLI::App& app);
+void add_scene_command(CLI::App& app);
+void add_sweep_command(CLI::App& app);
+void add_modes_command(CLI::App& app);
+void add_suite_command(CLI::App& app);
+void add_track_command(CLI::App& app);
 
 /// All commands, in the order of the help.
 inline constexpr void (*all_commands[])(CLI::App&) = {
-    add_init,      add_materials, add_solve,   add_scene, add_check,
-    add_suite,     add_calibrate, add_compare, add_paper, add_bench,
-    add_stability, add_track,     add_modes,   add_sweep, add_regress};
+    add_init_command,  add_materials_command, add_solve_command,     add_scene_command,
+    add_check_command, add_suite_command,     add_calibrate_command, add_compare_command,
+    add_paper_command, add_bench_command,     add_stability_command, add_track_command,
+    add_modes_command, add_sweep_command,     add_regress_command};
 
 }  // namespace dlo::cli

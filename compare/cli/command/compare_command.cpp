@@ -108,7 +108,7 @@ void run(const CompareOptions& options) {
 
 }  // namespace
 
-void add_compare(CLI::App& app) {
+void add_compare_command(CLI::App& app) {
   add_command<CompareOptions>(app, "compare", run, [](Command& command, CompareOptions& o) {
     command.bind("SCENE", o.scenes, "--no-modulus", o.no_modulus, o.overrides, o.plan, o.output,
                  o.plot, "--report", o.report);

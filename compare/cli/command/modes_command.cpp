@@ -37,7 +37,7 @@ void run(const ModesOptions& options) {
 
 }  // namespace
 
-void add_modes(CLI::App& app) {
+void add_modes_command(CLI::App& app) {
   add_command<ModesOptions>(app, "modes", run, [](Command& command, ModesOptions& o) {
     command.bind("SCENE", o.scene, "--count", o.modes.count, "--rate", o.modes.rate, "--damping",
                  o.modes.damping, "--tension", o.modes.tension, "--samples", o.samples, o.overrides,

@@ -26,7 +26,7 @@ void run(const OutputOptions& options) {
 
 }  // namespace
 
-void add_paper(CLI::App& app) {
+void add_paper_command(CLI::App& app) {
   add_command<OutputOptions>(app, "paper", run,
                              [](Command& command, OutputOptions& o) { command.bind(o); });
 }

@@ -71,7 +71,7 @@ void run(const RegressOptions& given) {
 
 }  // namespace
 
-void add_regress(CLI::App& app) {
+void add_regress_command(CLI::App& app) {
   add_command<RegressOptions>(app, "regress", run, [](Command& command, RegressOptions& o) {
     command.bind("SCENE", o.scenes, "--baseline", o.baseline, "--update", o.update, "--junit",
                  o.junit, "--model", o.model, "--relative", o.tolerance.relative, "--absolute",

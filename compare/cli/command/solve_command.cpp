@@ -157,7 +157,7 @@ void run(const SolveOptions& options) {
 
 }  // namespace
 
-void add_solve(CLI::App& app) {
+void add_solve_command(CLI::App& app) {
   add_command<SolveOptions>(app, "solve", run, [](Command& command, SolveOptions& o) {
     command.bind("SCENE", o.scene, "--model", o.model, "--samples", o.samples, "--all", o.all,
                  "--equilibrium", o.equilibrium, "--near", o.near, o.overrides, o.plan, o.output,

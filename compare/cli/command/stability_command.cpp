@@ -79,7 +79,7 @@ void run_cases(StabilityOptions options) {
 
 }  // namespace
 
-void add_stability(CLI::App& app) {
+void add_stability_command(CLI::App& app) {
   add_command<StabilityOptions>(
       app, "stability",
       [](const StabilityOptions& options) {

@@ -184,7 +184,7 @@ void run(const SweepOptions& given) {
 
 }  // namespace
 
-void add_sweep(CLI::App& app) {
+void add_sweep_command(CLI::App& app) {
   add_command<SweepOptions>(app, "sweep", run, [](Command& command, SweepOptions& o) {
     command.bind("FILE", o.files, "--vary", o.vary, "--format", o.format, "--model", o.model,
                  "--output", o.output, "--threads", o.threads, "--part", o.part, o.plot, o.scene);

@@ -73,7 +73,7 @@ void run(const TrackCommand& command) {
 
 }  // namespace
 
-void add_track(CLI::App& app) {
+void add_track_command(CLI::App& app) {
   add_command<TrackCommand>(app, "track", run, [](Command& command, TrackCommand& o) {
     command.bind("SCENE", o.scene, "--from", o.request.options.from, "--to", o.request.options.to,
                  "--frame-rate", o.request.frame_rate, "--obstacle-rate", o.request.obstacle_rate,

@@ -107,7 +107,7 @@ void run(const InitOptions& given) {
 
 }  // namespace
 
-void add_init(CLI::App& app) {
+void add_init_command(CLI::App& app) {
   add_command<InitOptions>(app, "init", run, [](Command& command, InitOptions& o) {
     command.bind("NAME", o.target, "--length", o.choices.length, "--diameter", o.choices.diameter,
                  "--material", o.choices.material, "--youngs-modulus", o.choices.youngs_modulus,

@@ -38,7 +38,7 @@ void run(const MaterialsOptions& options) {
 
 }  // namespace
 
-void add_materials(CLI::App& app) {
+void add_materials_command(CLI::App& app) {
   add_command<MaterialsOptions>(app, "materials", run, [](Command& command, MaterialsOptions& o) {
     command.bind("--materials", o.file, o.output);
   });

@@ -24,7 +24,7 @@ void run(const ShowOptions& options) {
 
 }  // namespace
 
-void add_scene(CLI::App& app) {
+void add_scene_command(CLI::App& app) {
   add_command<ShowOptions>(app, "scene", run, [](Command& command, ShowOptions& o) {
     command.bind("SCENE", o.scene, o.overrides, o.output);
   });

@@ -113,7 +113,7 @@ void run(const SuiteOptions& options) {
 
 }  // namespace
 
-void add_suite(CLI::App& app) {
+void add_suite_command(CLI::App& app) {
   add_command<SuiteOptions>(app, "suite", run, [](Command& command, SuiteOptions& o) {
     command.bind("--with", o.simulators, "--scenes", o.scenes, "--points", o.card.points, "--jobs",
                  o.card.threads, "--time-limit", o.card.time_limit, "--state", o.card.state,

@@ -169,7 +169,7 @@ EffectiveModulus no_modulus(std::string why) {
 
 /// Returns the RMS distance of an equilibrium from the straight rod [m]; NaN if there is no
 /// straight rod.
-double movement_of(const Scene& scene, const energy_model::Equilibrium& state) {
+double rms_distance_from_straight(const Scene& scene, const energy_model::Equilibrium& state) {
   constexpr int samples = 101;
   const std::vector<double> s = equal_arc_lengths(scene.length, samples);
   const auto straight = straight_rod(scene, s);
@@ -270,7 +270,7 @@ EffectiveModulus fit_effective_modulus(const Scene& scene, const ShapeDistance& 
                             : fmt::format("time limit of {:g} s reached", options.time_limit));
   }
   result.solves = mean_square.solves();
-  result.optimum = without_small_movement(result, movement_of(scene, state));
+  result.optimum = without_small_movement(result, rms_distance_from_straight(scene, state));
   return result;
 }
 

@@ -39,15 +39,15 @@ constexpr double deviance_tolerance = 1e-5;
 
 /// Returns the step of all numbers except the first to the least deviance, if the first one moves
 /// by `held`.
-/// @param slope  result of slope(), of all numbers
+/// @param gradient  result of log_posterior_gradient(), of all numbers
 Eigen::VectorXd step_of_others(const LinearFit& fit, double variance, const Eigen::VectorXd& before,
-                               const Eigen::VectorXd& slope, double held) {
+                               const Eigen::VectorXd& gradient, double held) {
   const Eigen::Index others = before.size() - 1;
   const auto of_others = fit.design.rightCols(others);
   Eigen::MatrixXd information = of_others.transpose() * of_others / variance;
   information.diagonal() += before.tail(others).cwiseAbs2();
   const Eigen::VectorXd left =
-      slope.tail(others) - of_others.transpose() * fit.design.col(0) / variance * held;
+      gradient.tail(others) - of_others.transpose() * fit.design.col(0) / variance * held;
   return information.completeOrthogonalDecomposition().solve(left);
 }
 
@@ -76,9 +76,9 @@ Eigen::MatrixXd posterior(const LinearFit& fit, double variance, const Eigen::Ve
   return information_of(fit, variance, before).completeOrthogonalDecomposition().pseudoInverse();
 }
 
-Eigen::MatrixXd posterior_under(const std::vector<ResidualSeries>& series, const LinearFit& fit,
-                                double weight, const Eigen::VectorXd& before,
-                                const ErrorCovariance& errors, double variance) {
+Eigen::MatrixXd sandwich_covariance(const std::vector<ResidualSeries>& series, const LinearFit& fit,
+                                    double weight, const Eigen::VectorXd& before,
+                                    const ErrorCovariance& errors, double variance) {
   const Eigen::MatrixXd inverse = posterior(fit, weight, before);
   Eigen::MatrixXd scatter = covariance_products(series, fit.design, errors);
   scatter *= variance / (weight * weight);
@@ -113,8 +113,9 @@ std::vector<bool> unseen(const LinearFit& fit, double variance, const Eigen::Vec
   return result;
 }
 
-Eigen::VectorXd slope(const LinearFit& fit, double variance, const Eigen::VectorXd& before,
-                      const Eigen::VectorXd& values) {
+Eigen::VectorXd log_posterior_gradient(const LinearFit& fit, double variance,
+                                       const Eigen::VectorXd& before,
+                                       const Eigen::VectorXd& values) {
   return fit.design.transpose() * fit.residual / variance - before.cwiseAbs2().cwiseProduct(values);
 }
 
@@ -219,7 +220,7 @@ double GaussNewton::last_step(double first_deviation) const {
 /// others with it.
 Eigen::VectorXd GaussNewton::next_step() const {
   const std::vector<Unknown>& unknowns = rods_.unknowns();
-  const Eigen::VectorXd down = slope(linear_, weight(), before_, values_);
+  const Eigen::VectorXd down = log_posterior_gradient(linear_, weight(), before_, values_);
   Eigen::VectorXd step = posterior_ * down;
   const double longest = unknowns.front().longest_step;
   const double there = std::clamp(values_[0] + std::clamp(step[0], -longest, longest),
@@ -275,7 +276,7 @@ double GaussNewton::profile(double first) {
     if (!(here < least)) break;
     least = here;
     if (others == 0) break;
-    const Eigen::VectorXd down = slope(chord, weight(), before_, values);
+    const Eigen::VectorXd down = log_posterior_gradient(chord, weight(), before_, values);
     const Eigen::VectorXd step = step_of_others(chord, weight(), before_, down, 0);
     if (step.dot(down.tail(others)) < deviance_tolerance) break;
     values.tail(others) += step;

@@ -25,13 +25,13 @@ struct LinearFit {
                                         const Eigen::VectorXd& before);
 
 /// Returns the covariance of the numbers after a least squares fit that assumes independent errors,
-/// for errors with another covariance.
+/// if the errors have another covariance (sandwich estimator).
 /// @param series  of the fit;  @param weight  variance by which its squares were divided
 /// @param errors  covariance of the errors, up to `variance`
-[[nodiscard]] Eigen::MatrixXd posterior_under(const std::vector<ResidualSeries>& series,
-                                              const LinearFit& fit, double weight,
-                                              const Eigen::VectorXd& before,
-                                              const ErrorCovariance& errors, double variance);
+[[nodiscard]] Eigen::MatrixXd sandwich_covariance(const std::vector<ResidualSeries>& series,
+                                                  const LinearFit& fit, double weight,
+                                                  const Eigen::VectorXd& before,
+                                                  const ErrorCovariance& errors, double variance);
 
 /// Variance of errors of a given correlation, estimated from the residuals of generalised least
 /// squares without priors, and its degrees of freedom.
@@ -47,10 +47,11 @@ struct VarianceEstimate {
 [[nodiscard]] std::vector<bool> unseen(const LinearFit& fit, double variance,
                                        const Eigen::VectorXd& before);
 
-/// Returns minus half the derivative of the deviance by the numbers. The deviance is the sum of
-/// squares divided by the variance, plus the priors' terms.
-[[nodiscard]] Eigen::VectorXd slope(const LinearFit& fit, double variance,
-                                    const Eigen::VectorXd& before, const Eigen::VectorXd& values);
+/// Returns the gradient of the log posterior density by the numbers, which is minus half that of
+/// the deviance: the sum of squares divided by the variance, plus the priors' terms.
+[[nodiscard]] Eigen::VectorXd log_posterior_gradient(const LinearFit& fit, double variance,
+                                                     const Eigen::VectorXd& before,
+                                                     const Eigen::VectorXd& values);
 
 /// Returns the logarithm of the determinant of half the deviance's second derivatives by all
 /// numbers except the first, without those that neither points nor priors determine.

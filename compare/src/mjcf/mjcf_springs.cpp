@@ -16,7 +16,7 @@ using Eigen::Vector3d;
 /// the cosine from 1 for axes that count as parallel [-].
 constexpr double aligned = 1e-6;
 
-MjcfSpring of_ball(const XmlFile& xml, const MjcfBody& body, double h) {
+MjcfSpring spring_of_ball(const XmlFile& xml, const MjcfBody& body, double h) {
   if (body.joints.size() > 1) {
     xml.fail(body.joints[1].node, "is a second joint besides a ball (allowed: one ball joint)");
   }
@@ -35,8 +35,8 @@ MjcfSpring of_ball(const XmlFile& xml, const MjcfBody& body, double h) {
   return result;
 }
 
-MjcfSpring of_hinges(const XmlFile& xml, const MjcfBody& body, const Vector3d& direction,
-                     double h) {
+MjcfSpring spring_of_hinges(const XmlFile& xml, const MjcfBody& body, const Vector3d& direction,
+                            double h) {
   if (body.plugin) {
     xml.fail(body.node, "has a cable plugin and hinges (allowed: a ball joint)");
   }
@@ -90,8 +90,9 @@ MjcfSpring mjcf_spring(const XmlFile& xml, const MjcfBody& body, const Vector3d&
     if (joint.type != MjcfJoint::Type::free) continue;
     xml.fail(joint.node, "is free: its body is not joined to the one before");
   }
-  return body.joints.front().type == MjcfJoint::Type::ball ? of_ball(xml, body, h)
-                                                           : of_hinges(xml, body, direction, h);
+  return body.joints.front().type == MjcfJoint::Type::ball
+             ? spring_of_ball(xml, body, h)
+             : spring_of_hinges(xml, body, direction, h);
 }
 
 }  // namespace dlo::compare

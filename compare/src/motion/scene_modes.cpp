@@ -48,8 +48,8 @@ Eigen::VectorXd mass_roots(const Eigen::VectorXd& masses) {
 }
 
 /// Returns the displacements of the polygon's free points in a mode of the rod.
-Eigen::VectorXd movement_of(const energy_model::VibrationMode& mode, const Scene& scene,
-                            const MovingPolygon& polygon) {
+Eigen::VectorXd displacements_in_mode(const energy_model::VibrationMode& mode, const Scene& scene,
+                                      const MovingPolygon& polygon) {
   std::vector<double> on_rod;
   for (const Eigen::Index i : polygon.free) {
     const double at = polygon.discretisation.arc_length[static_cast<std::size_t>(i)];
@@ -104,7 +104,7 @@ void add_polygon(const Scene& scene, const ModeOptions& options, SceneModes& res
     result.mass_of_steps = 1 / (options.rate * options.rate * own->c_F);
   }
   for (SceneMode& mode : result.modes) {
-    const Eigen::VectorXd movement = movement_of(mode.rod, scene, polygon);
+    const Eigen::VectorXd movement = displacements_in_mode(mode.rod, scene, polygon);
     if (!(movement.norm() > 0)) continue;
     const PolygonModes::Match match = weighed.nearest(movement);
     mode.polygon_likeness = match.likeness;

@@ -146,7 +146,7 @@ Eigen::Vector3d vector_of(const std::array<double, 3>& v) { return {v[0], v[1], 
 
 /// Checks that each d1 is a unit vector across the rod. The tangent is only known from the two
 /// chords at a point, so the allowed angle includes the angle between them.
-void require_directors(const RawShape& raw, const std::string& file) {
+void require_unit_directors(const RawShape& raw, const std::string& file) {
   if (!raw.d1.empty() && raw.d1.size() != raw.points.size()) {
     throw InputError(fmt::format("{}: d1: {} vectors of {} points (allowed: one a point, or none)",
                                  file, raw.d1.size(), raw.points.size()));
@@ -243,7 +243,7 @@ MeasuredShape checked(const RawShape& raw, const std::string& file, double unit)
   const double metres = raw.in_metres ? 1 : unit;
   require_points(raw, file, metres);
   require_arc_lengths(raw, file, metres);
-  require_directors(raw, file);
+  require_unit_directors(raw, file);
   MeasuredShape shape;
   shape.file = file;
   shape.unit = metres;

@@ -72,7 +72,7 @@ double weight_of(const WireErrors& errors, const GaussNewton& fit) {
   const Eigen::VectorXd nothing = Eigen::VectorXd::Zero(fit.before().size());
   const double independent = posterior(fit.linear(), 1, nothing)(0, 0);
   const double correlated =
-      posterior_under(fit.series(), fit.linear(), 1, nothing, errors.correlation, 1)(0, 0);
+      sandwich_covariance(fit.series(), fit.linear(), 1, nothing, errors.correlation, 1)(0, 0);
   return errors.variance * std::max(1.0, correlated / independent);
 }
 
@@ -149,8 +149,8 @@ Eigen::MatrixXd covariance_of_numbers(const WireErrors& errors, const GaussNewto
   for (const LikelyCovariance& likely : likely_covariances(fit.series())) {
     const double variance =
         noise ? errors.variance : variance_under(fit.series(), likely.covariance, frames).variance;
-    sum += likely.weight * posterior_under(fit.series(), fit.linear(), fit.weight(), fit.before(),
-                                           likely.covariance, variance);
+    sum += likely.weight * sandwich_covariance(fit.series(), fit.linear(), fit.weight(),
+                                               fit.before(), likely.covariance, variance);
   }
   return sum;
 }
