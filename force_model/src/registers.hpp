@@ -34,10 +34,12 @@ struct Registers {
     for (int i = 0; i < dimension; ++i) store(array + i, k, value.axis[i]);
   }
 
-  /// Copies a number of each rod to all lanes of that rod, and back.
-  static Lanes of_rods(const PerLane& values, std::ptrdiff_t column) {
+  /// Returns registers with a number of each rod in all lanes of that rod.
+  static Lanes lanes_of_rods(const PerLane& values, std::ptrdiff_t column) {
     return stride == 1 ? all_lanes(values.lane[0]) : read_lanes(values.lane + column * lane_count);
   }
+  /// Stores one number of each rod: the lanes of a single rod are combined by `combine`, and in a
+  /// batch each lane is the number of its own rod.
   template <Lanes combine(Lanes, Lanes)>
   static void gather(Lanes a, std::ptrdiff_t column, PerLane& values) {
     if constexpr (stride == 1) {

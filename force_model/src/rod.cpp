@@ -84,8 +84,8 @@ void require_own_points(std::string_view function, const std::vector<Grip>& grip
   }
 }
 
-Eigen::Vector3d on_held_point(const Grip& grip, Eigen::Index k, const Points& points,
-                              const Points& forces) {
+Eigen::Vector3d grip_force_on_point(const Grip& grip, Eigen::Index k, const Points& points,
+                                    const Points& forces) {
   const Eigen::Index i = grip.first_point + k;
   if (grip.hold == GripHold::rigid) return -forces.col(i);
   return spring_force(grip.stiffness, grip.targets.col(k), points.col(i));
@@ -201,7 +201,7 @@ void grip_reactions(const Rod& rod, const Points& points, Eigen::Ref<Eigen::Matr
     const Grip& grip = rod.grips[g];
     GripReaction reaction;
     for (Eigen::Index k = 0; k < grip.targets.cols(); ++k) {
-      const Eigen::Vector3d force = on_held_point(grip, k, points, forces);
+      const Eigen::Vector3d force = grip_force_on_point(grip, k, points, forces);
       const Eigen::Vector3d arm = points.col(grip.first_point + k) - grip.reference;
       reaction.force += force;
       reaction.torque += arm.cross(force);

@@ -221,11 +221,11 @@ void add_walls(const PointBlock& block, const WallLanes* walls, std::ptrdiff_t c
         Vector point;
         Vector normal;
         for (int i = 0; i < dimension; ++i) {
-          point.axis[i] = All::of_rods(wall->point[i], column);
-          normal.axis[i] = All::of_rods(wall->normal[i], column);
+          point.axis[i] = All::lanes_of_rods(wall->point[i], column);
+          normal.axis[i] = All::lanes_of_rods(wall->normal[i], column);
         }
         const Lanes depth = max(dot(point - P, normal), Lanes{});
-        F = F + (All::of_rods(wall->stiffness, column) * depth) * normal;
+        F = F + (All::lanes_of_rods(wall->stiffness, column) * depth) * normal;
       }
       all.store_vector(external_forces, k, F);
     }
@@ -241,9 +241,9 @@ void propose(const PointBlock& block, int turn, const PerLane& c_F, const PerLan
   const int proposed = proposals + 3 * turn;
   const int last_proposed = proposals + 3 * (1 - turn);
   for (std::ptrdiff_t column = 0; column < All::columns; ++column) {
-    const Lanes per_force = All::of_rods(c_F, column);
-    const Lanes per_movement = All::of_rods(kept, column);
-    const Lanes rounding = All::of_rods(rounding_squared, column);
+    const Lanes per_force = All::lanes_of_rods(c_F, column);
+    const Lanes per_movement = All::lanes_of_rods(kept, column);
+    const Lanes rounding = All::lanes_of_rods(rounding_squared, column);
     Lanes largest = {};
     Lanes total = {};
     Lanes oscillating = {};
@@ -281,7 +281,7 @@ void move(const PointBlock& block, int turn, const PerLane& c_m) {
   using Vector = LaneVector<dimension>;
   const All all{block};
   for (std::ptrdiff_t column = 0; column < All::columns; ++column) {
-    const Lanes scale = All::of_rods(c_m, column);
+    const Lanes scale = All::lanes_of_rods(c_m, column);
     for (std::ptrdiff_t k = column * lane_count; k < block.size; k += All::next) {
       Vector movement = scale * all.load_vector(proposals + 3 * turn, k);
       // The proposals of a rod that has diverged in a batch may be NaN.

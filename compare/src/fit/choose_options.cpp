@@ -193,7 +193,7 @@ class OptionsSearch {
   }
 
   /// Returns the largest prediction that counts as equal to `prediction`.
-  [[nodiscard]] double as_good_as(double prediction) const {
+  [[nodiscard]] double largest_equal_prediction(double prediction) const {
     return std::max((1 + as_well) * prediction, exactly * scenes_.front().length);
   }
 
@@ -205,7 +205,7 @@ class OptionsSearch {
     const double least = std::min_element(trials_.begin(), trials_.end(), better)->prediction();
     const Trial* result = nullptr;
     for (const Trial& trial : trials_) {
-      if (trial.prediction() > as_good_as(least)) continue;
+      if (trial.prediction() > largest_equal_prediction(least)) continue;
       if (result == nullptr || trial.numbers() < result->numbers()) result = &trial;
     }
     return *result;

@@ -145,7 +145,7 @@ ShapeMisfit::ShapeMisfit(const std::vector<Scene>& scenes, MeasuredShapes& measu
 std::shared_ptr<ShapeMisfit::Solved> ShapeMisfit::solve(std::size_t i,
                                                         const MaterialPoint& material,
                                                         const energy_model::Equilibrium* start) {
-  const Scene scene = of_material(scenes_[i], material);
+  const Scene scene = scene_with_material(scenes_[i], material);
   auto result = std::make_shared<Solved>();
   result->material = material;
   result->scene = i;
@@ -240,7 +240,8 @@ std::shared_ptr<const ShapeMisfit::Solved> ShapeMisfit::nearer(
     others.push_back(std::make_shared<Solved>(*now));
     Solved& near = *others.back();
     near.scene = i;
-    near.equilibrium = measured_.solve_near(i, of_material(scenes_[i], material), now->equilibrium);
+    near.equilibrium =
+        measured_.solve_near(i, scene_with_material(scenes_[i], material), now->equilibrium);
   }
   double least =
       now ? measured_.squares(i, now->equilibrium) : std::numeric_limits<double>::infinity();
@@ -355,7 +356,7 @@ std::vector<ResidualSeries> MaterialProfiles::residuals(const MaterialPoint& mat
   FittedRods rods(
       measured_,
       [this](std::size_t shape, const Eigen::VectorXd& values) {
-        return of_material(scenes_[shape], {values[0], both_ ? values[1] : 0});
+        return scene_with_material(scenes_[shape], {values[0], both_ ? values[1] : 0});
       },
       std::vector<Unknown>(static_cast<std::size_t>(unknowns()),
                            Unknown{.stride = derivative_step}));

@@ -22,7 +22,7 @@ struct MaterialPoint {
 };
 
 /// Returns the scene with its modulus and density scaled.
-[[nodiscard]] inline Scene of_material(Scene scene, const MaterialPoint& material) {
+[[nodiscard]] inline Scene scene_with_material(Scene scene, const MaterialPoint& material) {
   scene.scale_modulus(std::exp(material.log_modulus));
   scene.scale_density(std::exp(material.log_density));
   return scene;

@@ -261,7 +261,7 @@ Scene SceneTemplate::with(const std::vector<SceneField>& values) const {
   return scene;
 }
 
-std::string SceneValue::of_number(double number) { return fmt::format("{}", number); }
+std::string SceneValue::number_text(double number) { return fmt::format("{}", number); }
 
 SceneValue::SceneValue(std::initializer_list<SceneValue> list) : text_("[") {
   for (const SceneValue& value : list) {

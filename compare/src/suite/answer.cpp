@@ -128,9 +128,9 @@ constexpr int fine_chain = 1024;
 
 /// Returns the answers of `certified` to all scenes, in their order, computed on several threads.
 template <typename Of>
-std::vector<Of> of_each(const std::vector<BatteryScene>& scenes, int threads,
-                        const SolveOptions& options,
-                        Of (*certified)(const BatteryScene&, const SolveOptions&)) {
+std::vector<Of> certify_each(const std::vector<BatteryScene>& scenes, int threads,
+                             const SolveOptions& options,
+                             Of (*certified)(const BatteryScene&, const SolveOptions&)) {
   std::vector<Of> answers(scenes.size());
   tbb::task_arena arena(arena_threads(threads));
   execute(arena, [&] {
@@ -281,7 +281,7 @@ Answer certified_answer(const BatteryScene& scene, const SolveOptions& options) 
 
 std::vector<Answer> certified_answers(const std::vector<BatteryScene>& scenes, int threads,
                                       const SolveOptions& options) {
-  return of_each(scenes, threads, options, certified_answer);
+  return certify_each(scenes, threads, options, certified_answer);
 }
 
 MotionAnswer certified_motion(const BatteryScene& scene, const SolveOptions& options) {
@@ -310,7 +310,7 @@ MotionAnswer certified_motion(const BatteryScene& scene, const SolveOptions& opt
 
 std::vector<MotionAnswer> certified_motions(const std::vector<BatteryScene>& scenes, int threads,
                                             const SolveOptions& options) {
-  return of_each(scenes, threads, options, certified_motion);
+  return certify_each(scenes, threads, options, certified_motion);
 }
 
 }  // namespace dlo::compare

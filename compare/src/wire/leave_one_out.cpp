@@ -20,7 +20,7 @@ constexpr double alike = 0.02;
 
 /// Replaces the arc lengths of an aligned shape that covers the whole rod by lengths along its own
 /// points, because nearest points on the rod depend on the other fitted numbers.
-Shape by_its_own_lengths(Shape shape, double length) {
+Shape with_arc_lengths_along_points(Shape shape, double length) {
   const std::vector<double> s = lengths_along(shape.points);
   constexpr double whole = 0.97;
   if (s.back() < whole * length) return shape;
@@ -39,7 +39,7 @@ std::optional<double> repeatability_of(const std::vector<Scene>& scenes, const M
     const Alignment& laid = fitted.alignment;
     shapes.push_back(laid.arc_lengths == ArcLengths::file
                          ? laid.shape
-                         : by_its_own_lengths(laid.shape, scenes.front().length));
+                         : with_arc_lengths_along_points(laid.shape, scenes.front().length));
   }
   return repeatability(shapes, fit.shapes.front().alignment.arc_lengths);
 }

@@ -151,7 +151,9 @@ void add_loads_on_clamps(const MovingRod& rod, double begin, MovingFrame& frame)
   }
 }
 
-double of_largest(const EnergyBalance& energy, const EnergyBalance& first) {
+/// Returns the largest of the parts of an energy balance; potentials count from their values in the
+/// first frame.
+double largest_part(const EnergyBalance& energy, const EnergyBalance& first) {
   return std::max({energy.kinetic, energy.bending, energy.twisting, energy.obstacles,
                    energy.dissipated, energy.lost, std::abs(energy.work),
                    std::abs(energy.gravity - first.gravity), std::abs(energy.load - first.load)});
@@ -193,7 +195,7 @@ void add_frames(const MovingRod& rod, const std::vector<PlacedSpan>& spans,
     largest_imbalance = std::max(
         largest_imbalance,
         std::abs(energy.total() - first.total() + energy.dissipated + energy.lost - energy.work));
-    result.largest_energy = std::max(result.largest_energy, of_largest(energy, first));
+    result.largest_energy = std::max(result.largest_energy, largest_part(energy, first));
     if (k > 0) result.frames.push_back(std::move(frame));
   }
   result.energy_error = result.largest_energy > 0 ? largest_imbalance / result.largest_energy : 0;

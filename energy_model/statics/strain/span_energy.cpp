@@ -167,7 +167,7 @@ void SpanEnergy::constrain(SpanPoint& point) const {
 void SpanEnergy::carry(SpanPoint& at, const Eigen::Ref<const Eigen::VectorXd>& multipliers) const {
   at.carried = at.force;
   grips_.add_forces(multipliers, at.carried);
-  if (contacts_.count() > 0) at.contacts.add(of_contacts(multipliers), at.carried);
+  if (contacts_.count() > 0) at.contacts.add(contact_multipliers(multipliers), at.carried);
 }
 
 void SpanEnergy::hessian(SpanPoint& at, const Eigen::Ref<const Eigen::VectorXd>& multipliers,
@@ -203,7 +203,7 @@ void SpanEnergy::add_curvature(const SpanPoint& at,
                                const std::array<Eigen::MatrixXd, 3>& tangents,
                                Eigen::Ref<Eigen::MatrixXd> hessian) const {
   for_each(terms_, [&](const auto& term) { term.add_hessian(at, tangents, hessian); });
-  contacts_.subtract_hessian(at.contacts, of_contacts(multipliers), tangents, hessian);
+  contacts_.subtract_hessian(at.contacts, contact_multipliers(multipliers), tangents, hessian);
 }
 
 std::array<Eigen::MatrixXd, 3> SpanEnergy::tangent_jacobian(SpanPoint& at) const {
@@ -300,7 +300,7 @@ Eigen::VectorXd SpanEnergy::prolong_multipliers(const SpanEnergy& other,
   const Eigen::Index first = grips_.positions();
   prolonged.head(first) = multipliers.head(first);
   prolonged.segment(first, contacts_.count()) =
-      contacts_.prolong(other.contacts_, other.of_contacts(multipliers));
+      contacts_.prolong(other.contacts_, other.contact_multipliers(multipliers));
   const Eigen::Index rest = grips_.directions();
   prolonged.tail(rest) = multipliers.tail(rest);
   return prolonged;

@@ -145,7 +145,7 @@ class SpanEnergy {
   /// Returns the forces of rigid obstacles on the rod for these multipliers.
   [[nodiscard]] std::vector<ContactForce> contact_forces(const SpanPoint& at,
                                                          const Eigen::VectorXd& multipliers) const {
-    return contacts_.forces(at.contacts, at.t, of_contacts(multipliers));
+    return contacts_.forces(at.contacts, at.t, contact_multipliers(multipliers));
   }
 
   /// Returns the arc length of one of Span::contacts if it slides; std::nullopt for other contacts.
@@ -170,8 +170,9 @@ class SpanEnergy {
   [[nodiscard]] SpatialPoint in_space(SpanPoint& at) const {
     return {frames_, at.frames, at.t, has_psi() ? twist_root_ : 0, has_psi() ? twist(at.x) : 0};
   }
-  /// Multipliers of contacts; they stand between those of positions and of directions.
-  [[nodiscard]] Eigen::VectorXd of_contacts(
+  /// Returns the multipliers of contacts, which follow those of positions and precede those of
+  /// directions.
+  [[nodiscard]] Eigen::VectorXd contact_multipliers(
       const Eigen::Ref<const Eigen::VectorXd>& multipliers) const {
     return multipliers.segment(grips_.positions(), contacts_.count());
   }

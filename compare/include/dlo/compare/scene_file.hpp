@@ -30,7 +30,7 @@ class SceneValue {
   /// Converts any arithmetic type, in SI units.
   template <typename Number>
   requires std::is_arithmetic_v<Number> SceneValue(Number number)
-      : SceneValue(of_number(static_cast<double>(number))) {}
+      : SceneValue(number_text(static_cast<double>(number))) {}
   /// Takes a text as in a scene file: "5 cm", "copper".
   SceneValue(const char* text) : text_(text) {}
   /// Takes a text as in a scene file: "5 cm", "copper".
@@ -44,7 +44,7 @@ class SceneValue {
   [[nodiscard]] const std::string& text() const { return text_; }
 
  private:
-  static std::string of_number(double number);
+  static std::string number_text(double number);
 
   std::string text_;
 };
