@@ -289,9 +289,7 @@ class Chain {
   }
 
   /// Whether no held point is moved to where its neighbour in the file is.
-  [[nodiscard]] bool parts_points() const {
-    return chord_lengths(start()).minCoeff() > 0;
-  }
+  [[nodiscard]] bool parts_points() const { return chord_lengths(start()).minCoeff() > 0; }
 
   void lay_out() {
     const Eigen::Index n = inner_.size();
