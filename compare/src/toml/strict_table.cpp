@@ -283,7 +283,8 @@ void StrictTable::follow(std::string_view name) {
     }
     for (const std::string& other : key.needs) {
       if (has(other)) continue;
-      fail(other, fmt::format("missing, it is required beside {}", key.name));
+      fail(other,
+           fmt::format("missing, it is required beside {0} (allowed: both, or no {0})", key.name));
     }
   }
 }
