@@ -120,7 +120,8 @@ std::string solution_text(const compare::Solution& solution, const compare::Scen
   }
   all["solver"].erase("message");
   for (Json* part : {&all["solver"], &all["energy_J"]}) {
-    for (const char* key : {"steps", "terms", "twisting", "load", "stretch", "contact"}) {
+    for (const char* key :
+         {"steps", "terms", "evaluations", "twisting", "load", "stretch", "contact"}) {
       if (part->value(key, 1.) == 0) part->erase(key);
     }
   }
