@@ -65,13 +65,14 @@ void add_modulus(std::string& out, const compare::EffectiveModulus& modulus, dou
 
 std::string comparison_text(const compare::Comparison& c) {
   std::string out = compare::display(c.scene) + "\n";
+  if (!c.unverified.empty()) {
+    append(out, "  reference       {}: nothing below is proven\n", c.unverified);
+  }
   add_largest_and_rms(out, c.deviation);
   out += "\n";
   if (c.unverified.empty()) {
     add_modulus(out, c.effective_modulus, c.deviation.rms_m / c.deviation.rms_over_movement,
                 c.stiffness, NAN);
-  } else {
-    append(out, "  reference       {}: nothing here is proven\n", c.unverified);
   }
   compare::Document details{.json = comparison_json(c),
                             .large = {.length = c.length, .energy = std::abs(c.state.energy_J)}};
