@@ -63,7 +63,7 @@ def test_it_starts_from_the_points_that_it_is_given(cable):
     assert again.energy() == pytest.approx(rested.energy(), rel=1e-12)
     again.rest()
     numpy.testing.assert_allclose(again.points(), rested.points(), atol=1e-6)
-    with pytest.raises(dlo.InputError, match="3 of them"):
+    with pytest.raises(dlo.InputError, match="3 points"):
         dlo.ForceModel(cable, rested.points()[:3])
 
 

@@ -136,7 +136,7 @@ TEST_F(MotionCommand, MeasuredPosesAreSmoothedBelowTheirCutoff) {
   write("fast.toml", rod + way + "cutoff = \"50 Hz\"\n");
   expect_error(words({"solve", path("fast.toml")}), 2, {"gripper.cutoff = '50 Hz'", "50 Hz)"});
   write("alone.toml", rod + "position = [0, 0, 0]\ncutoff = \"5 Hz\"\n");
-  expect_error(words({"solve", path("alone.toml")}), 2, {"gripper.cutoff", "beside trajectory"});
+  expect_error(words({"solve", path("alone.toml")}), 2, {"gripper.trajectory", "beside cutoff"});
 }
 
 TEST_F(MotionCommand, CalibrateFindsTheStiffnessThatMovedTheMarkers) {
