@@ -297,7 +297,7 @@ def test_what_nobody_reads_cannot_be_set(steel, write, words):
         (lambda s: setattr(s, "material", {"youngs_moduls": 1e9}), "rod.material.youngs_moduls"),
         (lambda s: dlo.Gripper(at=0, postion=(0, 0, 0)), "gripper.postion"),
         (lambda s: dlo.Load(att=0), "load.att"),
-        (lambda s: dlo.Gripper(at=0, pose=[{"tme": 0, "position": (0, 0, 0)}]), "gripper.pose.tme"),
+        (lambda s: setattr(s, "grippers", [dlo.Gripper(at=0, pose=[{"tme": 0}])]), "gripper.pose.tme"),
     ],
 )
 def test_unknown_keys_of_tables_are_input_errors(steel, write, key):
