@@ -67,9 +67,9 @@ class SpawnSettings {
 };
 
 /// Waits until a child has ended, and leaves it as a zombie; returns false at the time limit. The
-/// timer begins before the start, during which a short program may end. The
-/// interval between two checks is short at first and then a hundredth of the elapsed time, so that
-/// the wall time is accurate to 1 %.
+/// timer begins before the start, during which a short program may end. The interval between two
+/// checks is short at first and then a hundredth of the elapsed time, so that the wall time is
+/// accurate to 1 %.
 bool ended_within(pid_t process, double time_limit, const Timer& timer, double& seconds) {
   while (true) {
     siginfo_t info{};
