@@ -250,12 +250,9 @@ void run_force_model(const CalibrateOptions& options, bool points_are_given, boo
   if (!fit.reached() && options.target) end_with(ExitStatus::outside_tolerance);
 }
 
-}  // namespace
-
-void add_calibrate_command(CLI::App& app) {
+void prepare(Command& command) {
   const auto options = std::make_shared<CalibrateOptions>();
   CalibrateOptions& o = *options;
-  Command command(app, "calibrate");
   command.bind("SCENE", o.scenes, "--holdout", o.holdouts, "--target", o.target, "--shape",
                o.shapes, "--density", o.density, "--torsional-stiffness", o.torsional_stiffness,
                "--noise", o.noise, "--natural-curvature", o.natural_curvature_terms,
@@ -277,6 +274,13 @@ void add_calibrate_command(CLI::App& app) {
       run_material(*options, format_is_given);
     }
   });
+}
+
+}  // namespace
+
+void add_calibrate_command(CLI::App& app) {
+  const auto command = std::make_shared<Command>(app, "calibrate");
+  command->prepares([command] { prepare(*command); });
 }
 
 }  // namespace dlo::cli

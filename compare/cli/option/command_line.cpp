@@ -32,6 +32,24 @@ const Json* find_row(const Json& table, const std::string& name) {
   return row == rows.end() ? nullptr : &*row;
 }
 
+/// Returns a part of the table of options as JSON.
+Json json_of(const toml::node& node) {
+  Json result;
+  if (const toml::table* const table = node.as_table()) {
+    for (const auto& [key, value] : *table) result[std::string(key.str())] = json_of(value);
+  } else if (const toml::array* const array = node.as_array()) {
+    for (const toml::node& value : *array) result.push_back(json_of(value));
+  } else {
+    node.visit([&result](const auto& value) {
+      if constexpr (toml::is_string<decltype(value)> || toml::is_number<decltype(value)> ||
+                    toml::is_boolean<decltype(value)>) {
+        result = value.get();
+      }
+    });
+  }
+  return result;
+}
+
 /// Checks a number's range. @return the range in words
 std::string add_range(CLI::Option& option, const Json& range, bool is_integer) {
   const double low = range.front();
@@ -150,11 +168,7 @@ std::string unexpected(const CLI::App& command, const std::vector<std::string>& 
 }  // namespace
 
 const Json& option_table() {
-  static const Json table = [] {
-    std::ostringstream text;
-    text << toml::json_formatter(toml::parse(compare::builtin::options_toml));
-    return Json::parse(text.str());
-  }();
+  static const Json table = json_of(toml::parse(compare::builtin::options_toml));
   return table;
 }
 
@@ -196,7 +210,8 @@ void require_values(const std::vector<std::string>& words) {
 
 Command::Command(CLI::App& app, const std::string& name)
     : app_(*app.add_subcommand(name, option_table().at(name).at("words"))),
-      table_(option_table().at(name)) {
+      table_(option_table().at(name)),
+      used_(expanded(table_.value("uses", ""))) {
   app_.group(table_.at("group"));
   app_.footer(table_.at("footer").get<std::string>());
 }
@@ -214,8 +229,7 @@ CLI::Option* Command::add_function(const std::string& name,
 
 const Json* Command::find(const std::string& name) const {
   const Json* const own = find_row(table_, name);
-  const Names used = expanded(table_.value("uses", ""));
-  if (own != nullptr || std::ranges::find(used, name) == used.end()) return own;
+  if (own != nullptr || std::ranges::find(used_, name) == used_.end()) return own;
   return find_row(option_table().at("common"), name);
 }
 
@@ -255,7 +269,7 @@ CLI::Option* Command::describe(CLI::Option* option, const Json& row, bool is_int
 }
 
 void Command::runs(const std::function<void()>& run) {
-  Names names = expanded(table_.value("uses", ""));
+  Names names = used_;
   for (const Json& row : table_.value("options", Json::array())) names.push_back(name_of(row));
   for (const std::string& name : names) {
     CLI::Option* const option = app_.get_option_no_throw(name);

@@ -97,6 +97,10 @@ class Command {
   }
   [[nodiscard]] CLI::App& app() { return app_; }
 
+  /// Sets a function that adds the options when the command is chosen.
+  void prepares(const std::function<void()>& prepare) {
+    app_.preparse_callback([prepare](std::size_t /*words*/) { prepare(); });
+  }
   /// Sets the function that the command runs, after all options have been added.
   void runs(const std::function<void()>& run);
 
@@ -116,17 +120,21 @@ class Command {
 
   CLI::App& app_;
   const compare::Json& table_;
+  const Names used_;  ///< names of the rows of [common] that the command uses
 };
 
-/// Adds a command to the application, which runs it when it is chosen.
+/// Adds a command to the application, which runs it when it is chosen. Its options are not added
+/// before that, since most commands of a call are not chosen.
 /// @param run  gets the options;  @param bind  binds the rows of the command to them
 template <typename Options, typename Bind>
 void add_command(CLI::App& app, const std::string& name, void (*run)(const Options&),
                  const Bind& bind) {
   const auto options = std::make_shared<Options>();
-  Command command(app, name);
-  bind(command, *options);
-  command.runs([options, run] { run(*options); });
+  const auto command = std::make_shared<Command>(app, name);
+  command->prepares([command, options, run, bind] {
+    bind(*command, *options);
+    command->runs([options, run] { run(*options); });
+  });
 }
 
 /// Returns the names of an option, such as "-o" and "--output", or that of an argument.
