@@ -15,9 +15,12 @@ namespace dlo::energy_model {
 namespace {
 
 using Eigen::Quaterniond;
-/// Free spins of a frame, one per column.
-using SpinBasis = Eigen::Matrix<double, 3, Eigen::Dynamic, Eigen::ColMajor, 3, 3>;
-using SpinBlock = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::ColMajor, 3, 3>;
+
+/// Spins that a frame is free to take: the first `size` columns of `axes`; the others are 0.
+struct SpinBasis {
+  Eigen::Matrix3d axes = Eigen::Matrix3d::Zero();
+  Eigen::Index size = 0;
+};
 
 constexpr int most_steps = 200;  // maximum number of Newton steps; about 30 are usual
 constexpr int most_shifts = 60;  // maximum number of increases of the shift, by a factor of 4 each
@@ -35,20 +38,22 @@ constexpr double closing = 0.25;
 constexpr double penalty_growth = 4;      // increase of a penalty in a round, as a factor
 constexpr double largest_penalty = 1e12;  // largest penalty divided by the initial one
 
-/// Energy of a joint, and its derivatives by the spin w of its right frame minus that of its left
-/// one. With turn = (c, v) in quaternions, the first and second derivatives of v along constant
-/// spins w_l and w_r are
+double joint_energy(const FrameJoint& joint, const Quaterniond& left, const Quaterniond& right) {
+  const Eigen::Vector3d excess = joint.excess(left.conjugate() * right);
+  return joint.h / 2 * excess.dot(joint.stiffness.cwiseProduct(excess));
+}
+
+/// Derivatives of a joint's energy by the spin w of its right frame minus that of its left one.
+/// With turn = (c, v) in quaternions, the first and second derivatives of v along constant spins
+/// w_l and w_r are
 ///     (c w + w x v) / 2,   -|w|^2 / 4 v - (c I - hat(v)) (w_l x w_r) / 2.
-struct JointEnergy {
-  double value;
+struct JointDerivatives {
   Eigen::Vector3d couple;  // derivative by w
   Eigen::Matrix3d second;  // second derivative by w, without the term of w_l x w_r
 
-  JointEnergy(const FrameJoint& joint, const Quaterniond& left, const Quaterniond& right) {
+  JointDerivatives(const FrameJoint& joint, const Quaterniond& left, const Quaterniond& right) {
     const Quaterniond turn = left.conjugate() * right;
-    const Eigen::Vector3d excess = joint.excess(turn);
-    const Eigen::Vector3d moment = joint.stiffness.cwiseProduct(excess);
-    value = joint.h / 2 * excess.dot(moment);
+    const Eigen::Vector3d moment = joint.stiffness.cwiseProduct(joint.excess(turn));
     const Eigen::Matrix3d one = Eigen::Matrix3d::Identity();
     const Eigen::Matrix3d by_spin = joint.factor(turn) / 2 *
                                     (turn.w() * one - cross_matrix(turn.vec())) *
@@ -70,6 +75,14 @@ std::vector<Quaterniond> frames_along(const Eigen::Matrix3Xd& tangents, const Qu
   frames.erase(frames.begin());
   return frames;
 }
+
+/// Quadratic model of the augmented energy in the free spins of the frames.
+struct RodModel {
+  std::vector<SpinBasis> bases;   ///< by frame
+  Eigen::MatrixXd band, columns;  ///< Hessian: band + columns columns^T (see PolygonFactor)
+  Eigen::VectorXd lengths;        ///< length of the interval of each unknown, by which shifts act
+  Eigen::VectorXd descent;        ///< negative gradient
+};
 
 /// A Newton step.
 struct RodStep {
@@ -105,7 +118,9 @@ class DiscreteRod {
 
   [[nodiscard]] double energy() const {
     double energy = 0;
-    for (const FrameJoint& joint : joints_) energy += energy_of(joint).value;
+    for (const FrameJoint& joint : joints_) {
+      energy += joint_energy(joint, frame(joint.left), frame(joint.right));
+    }
     for (Eigen::Index i = 0; i < mesh_.intervals(); ++i) {
       energy -= mesh_.width(i) * carried_.col(i).dot(tangent(i));
     }
@@ -130,60 +145,67 @@ class DiscreteRod {
     }
   }
 
-  /// Returns the Newton step of the augmented energy with `shift` times the length of each interval
-  /// added to the Hessian; std::nullopt unless the Hessian is then positive definite.
-  [[nodiscard]] std::optional<RodStep> newton_step(double shift) const {
-    const Eigen::Matrix3Xd n = force(true);
-    const Eigen::Matrix3Xd g = gradient(n);
-    Eigen::MatrixXd band = Eigen::MatrixXd::Zero(std::min(2 * widest_, unknowns_), unknowns_);
-    Eigen::MatrixXd columns =
-        Eigen::MatrixXd::Zero(unknowns_, 3 * static_cast<Eigen::Index>(gaps.size()));
-    std::vector<SpinBasis> bases;
-    for (Eigen::Index k = 0; k < std::ssize(q_); ++k) bases.push_back(basis(k));
-    const auto basis_of = [&](Eigen::Index k) -> const SpinBasis& {
-      return bases[static_cast<std::size_t>(k)];
+  [[nodiscard]] RodModel model() const {
+    const Eigen::Index frames = std::ssize(q_);
+    RodModel model{std::vector<SpinBasis>(q_.size()),
+                   Eigen::MatrixXd::Zero(std::min(2 * widest_, unknowns_), unknowns_),
+                   Eigen::MatrixXd::Zero(unknowns_, 3 * std::ssize(gaps)),
+                   Eigen::VectorXd(unknowns_), Eigen::VectorXd(unknowns_)};
+    for (Eigen::Index f = 0; f < frames; ++f) model.bases[static_cast<std::size_t>(f)] = basis(f);
+    const auto basis_of = [&](Eigen::Index f) -> const SpinBasis& {
+      return model.bases[static_cast<std::size_t>(f)];
     };
     const auto add = [&](Eigen::Index row, Eigen::Index column, const Eigen::Matrix3d& block) {
-      const SpinBlock own = basis_of(row).transpose() * block * basis_of(column);
-      for (Eigen::Index i = 0; i < own.rows(); ++i) {
-        for (Eigen::Index j = 0; j < own.cols(); ++j) {
+      const Eigen::Matrix3d own = basis_of(row).axes.transpose() * block * basis_of(column).axes;
+      for (Eigen::Index i = 0; i < basis_of(row).size; ++i) {
+        for (Eigen::Index j = 0; j < basis_of(column).size; ++j) {
           const Eigen::Index below = first_of(row) + i - first_of(column) - j;
-          if (below >= 0) band(below, first_of(column) + j) += own(i, j);
+          if (below >= 0) model.band(below, first_of(column) + j) += own(i, j);
         }
       }
     };
-    for (const FrameJoint& joint : joints_) {
-      const JointEnergy of = energy_of(joint);
-      add(joint.left, joint.left, of.second);
-      add(joint.right, joint.right, of.second);
-      add(joint.right, joint.left, -of.second - cross_matrix(of.couple) / 2);
+    const Eigen::Matrix3Xd n = force(true);
+    const std::vector<JointDerivatives> joints = derivatives();
+    const Eigen::Matrix3Xd g = gradient(joints, n);
+    std::vector<Eigen::Matrix3d> diagonal(q_.size(), Eigen::Matrix3d::Zero());
+    for (std::size_t k = 0; k < joints_.size(); ++k) {
+      diagonal[static_cast<std::size_t>(joints_[k].left)] += joints[k].second;
+      diagonal[static_cast<std::size_t>(joints_[k].right)] += joints[k].second;
+      add(joints_[k].right, joints_[k].left,
+          -joints[k].second - cross_matrix(joints[k].couple) / 2);
     }
-    for (Eigen::Index f = 0; f < std::ssize(q_); ++f) {
+    for (Eigen::Index f = 0; f < frames; ++f) {
       const double h = mesh_.width(std::min(f, mesh_.intervals() - 1));
-      Eigen::Matrix3d own = shift * h * Eigen::Matrix3d::Identity();
+      Eigen::Matrix3d& own = diagonal[static_cast<std::size_t>(f)];
       if (f < mesh_.intervals()) own -= h * spin_curvature(tangent(f), n.col(f));
       add(f, f, own);
+      const Eigen::Vector3d descent = -basis_of(f).axes.transpose() * g.col(f);
+      model.descent.segment(first_of(f), basis_of(f).size) = descent.head(basis_of(f).size);
+      model.lengths.segment(first_of(f), basis_of(f).size).setConstant(h);
     }
     for (std::size_t k = 0; k < gaps.size(); ++k) {
       for (Eigen::Index i = gaps[k].first; i < gaps[k].end; ++i) {
-        const SpinBasis& own = basis_of(i);
-        columns.block(first_of(i), 3 * static_cast<Eigen::Index>(k), own.cols(), 3) =
-            std::sqrt(gaps[k].penalty) * mesh_.width(i) * own.transpose() *
-            cross_matrix(tangent(i));
+        const Eigen::Matrix3d own =
+            basis_of(i).axes.transpose() * cross_matrix(mesh_.width(i) * tangent(i));
+        model.columns.block(first_of(i), 3 * static_cast<Eigen::Index>(k), basis_of(i).size, 3) =
+            std::sqrt(gaps[k].penalty) * own.topRows(basis_of(i).size);
       }
     }
+    return model;
+  }
+
+  /// Returns the Newton step of a model with `shift` times the length of each interval added to the
+  /// Hessian; std::nullopt unless the Hessian is then positive definite.
+  [[nodiscard]] std::optional<RodStep> newton_step(const RodModel& model, double shift) const {
+    Eigen::MatrixXd shifted = model.band;
+    shifted.row(0) += shift * model.lengths.transpose();
     PolygonFactor factor;
-    if (!factor.compute(band, columns, 0)) return std::nullopt;
-    Eigen::VectorXd right(unknowns_);
+    if (!factor.compute(shifted, model.columns, 0)) return std::nullopt;
+    const Eigen::VectorXd x = factor.solve(model.descent);
+    RodStep step{Eigen::Matrix3Xd::Zero(3, std::ssize(q_)), 0, -model.descent.dot(x)};
     for (Eigen::Index f = 0; f < std::ssize(q_); ++f) {
-      const SpinBasis& own = basis_of(f);
-      right.segment(first_of(f), own.cols()) = -own.transpose() * g.col(f);
-    }
-    const Eigen::VectorXd x = factor.solve(right);
-    RodStep step{Eigen::Matrix3Xd::Zero(3, std::ssize(q_)), 0, -right.dot(x)};
-    for (Eigen::Index f = 0; f < std::ssize(q_); ++f) {
-      const SpinBasis& own = basis_of(f);
-      step.spins.col(f) = own * x.segment(first_of(f), own.cols());
+      const SpinBasis& own = model.bases[static_cast<std::size_t>(f)];
+      step.spins.col(f) = own.axes.leftCols(own.size) * x.segment(first_of(f), own.size);
     }
     step.largest = step.spins.leftCols(mesh_.intervals()).colwise().norm().maxCoeff();
     return step.slope <= 0 ? std::optional(step) : std::nullopt;
@@ -216,23 +238,22 @@ class DiscreteRod {
   [[nodiscard]] Eigen::Index first_of(Eigen::Index f) const {
     return first_[static_cast<std::size_t>(f)];
   }
-  [[nodiscard]] JointEnergy energy_of(const FrameJoint& joint) const {
-    return {joint, frame(joint.left), frame(joint.right)};
-  }
-
   /// A clamp after the first one releases the rotation about its direction; the energy of a round
   /// rod does not depend on the roll.
   [[nodiscard]] SpinBasis basis(Eigen::Index f) const {
     const bool is_clamp = f >= mesh_.intervals();
-    if (is_clamp && (f == mesh_.intervals() || normal_ || span_.round())) return SpinBasis(3, 0);
-    if (normal_) return *normal_;
-    const Eigen::Vector3d t = tangent(f);
-    if (is_clamp) return t;
-    if (!span_.round()) return Eigen::Matrix3d::Identity();
-    SpinBasis across(3, 2);
-    const Eigen::Vector3d first = t.unitOrthogonal();
-    across << first, t.cross(first);
-    return across;
+    SpinBasis basis;
+    if (is_clamp && (f == mesh_.intervals() || normal_ || span_.round())) return basis;
+    basis.size = normal_ || is_clamp ? 1 : span_.round() ? 2 : 3;
+    if (basis.size == 3) {
+      basis.axes.setIdentity();
+    } else if (basis.size == 2) {
+      basis.axes.col(0) = tangent(f).unitOrthogonal();
+      basis.axes.col(1) = tangent(f).cross(basis.axes.col(0));
+    } else {
+      basis.axes.col(0) = normal_ ? *normal_ : tangent(f);
+    }
+    return basis;
   }
 
   /// Numbers the unknowns along the rod, so that joints couple neighbours.
@@ -240,8 +261,8 @@ class DiscreteRod {
     first_.resize(q_.size());
     const auto number = [&](Eigen::Index f) {
       first_[static_cast<std::size_t>(f)] = unknowns_;
-      widest_ = std::max(widest_, basis(f).cols());
-      unknowns_ += basis(f).cols();
+      widest_ = std::max(widest_, basis(f).size);
+      unknowns_ += basis(f).size;
     };
     for (Eigen::Index i = 0; i <= mesh_.intervals(); ++i) {
       const RodSpan::Clamp* clamp = span_.clamp_at(mesh_.s[i]);
@@ -257,8 +278,7 @@ class DiscreteRod {
     for (Eigen::Index i = 0; i < mesh_.intervals(); ++i) {
       const double x = static_cast<double>(i) / static_cast<double>(mesh_.intervals());
       const Eigen::Vector3d turn(std::sin(3 * x + 1), std::cos(2 * x), std::sin(2 * x + 1));
-      const SpinBasis own = basis(i);
-      spins.col(i) = amplitude * own * turn.head(own.cols());
+      spins.col(i) = amplitude * basis(i).axes * turn;
     }
     turn(std::vector<Quaterniond>(q_), spins);
   }
@@ -275,13 +295,22 @@ class DiscreteRod {
     return force;
   }
 
-  /// Returns the derivative of the energy by the spins of the frames under a carried force.
-  [[nodiscard]] Eigen::Matrix3Xd gradient(const Eigen::Matrix3Xd& force) const {
-    Eigen::Matrix3Xd gradient = Eigen::Matrix3Xd::Zero(3, std::ssize(q_));
+  [[nodiscard]] std::vector<JointDerivatives> derivatives() const {
+    std::vector<JointDerivatives> joints;
+    joints.reserve(joints_.size());
     for (const FrameJoint& joint : joints_) {
-      const Eigen::Vector3d couple = energy_of(joint).couple;
-      gradient.col(joint.right) += couple;
-      gradient.col(joint.left) -= couple;
+      joints.emplace_back(joint, frame(joint.left), frame(joint.right));
+    }
+    return joints;
+  }
+
+  /// Returns the derivative of the energy by the spins of the frames under a carried force.
+  [[nodiscard]] Eigen::Matrix3Xd gradient(const std::vector<JointDerivatives>& joints,
+                                          const Eigen::Matrix3Xd& force) const {
+    Eigen::Matrix3Xd gradient = Eigen::Matrix3Xd::Zero(3, std::ssize(q_));
+    for (std::size_t k = 0; k < joints.size(); ++k) {
+      gradient.col(joints_[k].right) += joints[k].couple;
+      gradient.col(joints_[k].left) -= joints[k].couple;
     }
     for (Eigen::Index i = 0; i < mesh_.intervals(); ++i) {
       gradient.col(i) -= mesh_.width(i) * tangent(i).cross(Eigen::Vector3d(force.col(i)));
@@ -291,7 +320,7 @@ class DiscreteRod {
 
   /// Sets the multiplier that balances the intervals between two grips best.
   void fit_multiplier(GripGap& of) const {
-    const Eigen::Matrix3Xd without = gradient(carried_);
+    const Eigen::Matrix3Xd without = gradient(derivatives(), carried_);
     Eigen::Matrix3d matrix = Eigen::Matrix3d::Zero();
     Eigen::Vector3d right = Eigen::Vector3d::Zero();
     for (Eigen::Index i = of.first; i < of.end; ++i) {
@@ -316,10 +345,11 @@ class DiscreteRod {
 /// Takes a Newton step with a shift for which the Hessian is positive definite, halved until the
 /// augmented energy decreases, and adapts the shift.
 std::optional<RodStep> descend_once(DiscreteRod& rod, double unit, double& shift) {
-  std::optional<RodStep> step = rod.newton_step(shift);
+  const RodModel model = rod.model();
+  std::optional<RodStep> step = rod.newton_step(model, shift);
   for (int k = 0; k < most_shifts && !step; ++k) {
     shift = std::max(4 * shift, unit);
-    step = rod.newton_step(shift);
+    step = rod.newton_step(model, shift);
   }
   if (!step) return step;
   const double before = rod.augmented_energy();
