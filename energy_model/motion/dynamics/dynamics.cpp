@@ -11,7 +11,7 @@
 #include "dynamics/moving_span.hpp"
 #include "problem/rod_law.hpp"
 #include "search/twist_path.hpp"
-#include "span/span_traits.hpp"
+#include "span/local_solver.hpp"
 #include "vibration/span_modes.hpp"
 
 namespace dlo::energy_model {

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "contact/update_contacts.hpp"
+#include "contact/clearance.hpp"
 #include "span/span_options.hpp"
 #include "strain/span_solution.hpp"
 

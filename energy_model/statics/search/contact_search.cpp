@@ -10,7 +10,6 @@
 
 #include "contact/clearance.hpp"
 #include "contact/penalty_polygon.hpp"
-#include "contact/update_contacts.hpp"
 #include "search/active_set.hpp"
 #include "span/found.hpp"
 #include "span/nearby_equilibria.hpp"

@@ -17,10 +17,9 @@
 #include "problem/split.hpp"
 #include "search/assemble.hpp"
 #include "search/known_shape.hpp"
-#include "search/twisted_span.hpp"
-#include "search/untwisted_span.hpp"
+#include "search/placed_span.hpp"
 #include "span/found.hpp"
-#include "span/span_traits.hpp"
+#include "span/local_solver.hpp"
 
 namespace dlo::energy_model {
 namespace {

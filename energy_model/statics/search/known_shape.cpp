@@ -11,7 +11,7 @@
 #include "base/sized_samples.hpp"
 #include "contact/penalty_polygon.hpp"
 #include "search/twist_path.hpp"
-#include "span/span_traits.hpp"
+#include "span/local_solver.hpp"
 
 namespace dlo::energy_model {
 

@@ -10,7 +10,7 @@
 #include "certify/certify.hpp"
 #include "certify/piece_cuts.hpp"
 #include "newton/trust_region.hpp"
-#include "span/span_traits.hpp"
+#include "span/local_solver.hpp"
 #include "strain/second_derivatives.hpp"
 
 namespace dlo::energy_model {
