@@ -1,7 +1,6 @@
 #include "certify/piece_cuts.hpp"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <cstddef>
 #include <limits>
@@ -77,15 +76,6 @@ std::vector<Feature> peaks_of(const SpanSolution& solution, double begin, double
     i += aside;
   }
   return peaks;
-}
-
-/// Adds cuts on one side of a feature where it has decayed, as far as there is room.
-void cut_beside(const Feature& feature, double sense, double room, std::vector<double>& cuts) {
-  constexpr std::array<double, 2> depths = {6, 24};
-  for (const double depth : depths) {
-    const double away = depth * feature.length;
-    if (away > 0 && 2.5 * away < room) cuts.push_back(feature.at + sense * away);
-  }
 }
 
 /// Number of intervals at whose ends a shape is sampled first.
@@ -254,8 +244,8 @@ std::vector<double> piece_cuts(const SpanSolution& solution) {
     features.push_back(kink_at(solution, kinks[k + 1], -1));
     for (std::size_t i = 0; i + 1 < features.size(); ++i) {
       const double room = features[i + 1].at - features[i].at;
-      cut_beside(features[i], 1, room, cuts);
-      cut_beside(features[i + 1], -1, room, cuts);
+      cut_beside(features[i].at, 1, features[i].length, room, cuts);
+      cut_beside(features[i + 1].at, -1, features[i + 1].length, room, cuts);
     }
   }
   std::sort(cuts.begin(), cuts.end());

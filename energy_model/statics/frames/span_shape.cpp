@@ -151,11 +151,8 @@ void cut_taut(const Segment& segment, const Span& span, std::vector<double>& cut
   }
   kinks.push_back(segment.end);
   for (std::size_t i = 0; i + 1 < kinks.size(); ++i) {
-    for (const double depth : layer_depths) {
-      if (!(2.5 * depth * layer < kinks[i + 1] - kinks[i])) continue;
-      cuts.push_back(kinks[i] + depth * layer);
-      cuts.push_back(kinks[i + 1] - depth * layer);
-    }
+    cut_beside(kinks[i], 1, layer, kinks[i + 1] - kinks[i], cuts);
+    cut_beside(kinks[i + 1], -1, layer, kinks[i + 1] - kinks[i], cuts);
   }
 }
 
@@ -169,11 +166,7 @@ void cut_free_boundaries(const Span& span, double layer, std::vector<double>& cu
       const double way = sense * (other - from);
       if (way > closest_cuts) room = std::min(room, way);
     }
-    for (const double depth : layer_depths) {
-      if (std::isfinite(room) && 2.5 * depth * layer < room) {
-        cuts.push_back(from + sense * depth * layer);
-      }
-    }
+    if (std::isfinite(room)) cut_beside(from, sense, layer, room, cuts);
   };
   for (const Span::Contact& contact : span.contacts) {
     cut(contact.begin, -1);
@@ -198,6 +191,13 @@ void cut_layers(const Span& span, std::vector<double>& cuts) {
 }
 
 }  // namespace
+
+void cut_beside(double origin, double sense, double layer, double room, std::vector<double>& cuts) {
+  for (const double depth : layer_depths) {
+    const double away = depth * layer;
+    if (away > 0 && 2.5 * away < room) cuts.push_back(origin + sense * away);
+  }
+}
 
 std::vector<double> kinks_of(const Span& span) {
   std::vector<double> kinks = {0, span.length, span.anchor};

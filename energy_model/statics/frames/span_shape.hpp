@@ -20,6 +20,11 @@ namespace dlo::energy_model {
 /// own.
 inline constexpr double closest_cuts = 1e-9;
 
+/// Adds element boundaries on one side of the origin of a layer where the layer has decayed by
+/// exp(-6) and exp(-24), each if the distance to the next feature exceeds 2.5 times its own.
+/// @param layer  length (EI / force)^(1/2); 0: there is no layer
+void cut_beside(double origin, double sense, double layer, double room, std::vector<double>& cuts);
+
 /// Whether a grip holds the span at s.
 [[nodiscard]] inline bool is_held(const Span& span, double s) {
   return span.held_within(s, s, closest_cuts) != HeldBy::nothing;
