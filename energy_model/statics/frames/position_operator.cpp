@@ -62,22 +62,6 @@ PointsReach PositionOperator::at_begin(Eigen::Index piece) const {
   return {begin(piece), 0, Eigen::MatrixXd::Zero(0, 1)};
 }
 
-/// Returns weights of an element's nodes in linear functionals of the Legendre series that
-/// interpolates the values at the nodes.
-/// @param of_terms  value of the functional for each polynomial
-Eigen::MatrixXd PositionOperator::through(const Eigen::MatrixXd& of_terms) const {
-  return table_->weights.asDiagonal() * (table_->values * of_terms);
-}
-
-PointsReach PositionOperator::points(Eigen::Index piece, const Eigen::VectorXd& shares) const {
-  const Eigen::Index Q = table_->nodes.size();
-  Eigen::VectorXd values(Q);
-  Eigen::MatrixXd integrals(Q, shares.size());
-  for (Eigen::Index j = 0; j < shares.size(); ++j) legendre(shares[j], values, integrals.col(j));
-  const double length = pieces_[static_cast<std::size_t>(piece)].length;
-  return {begin(piece), piece * Q, length * through(integrals)};
-}
-
 PointsReach PositionOperator::along(Eigen::Index piece) const {
   const Eigen::Index Q = table_->nodes.size();
   const Eigen::Index first = piece * Q;
@@ -92,8 +76,7 @@ Eigen::VectorXd PositionOperator::at(double s) const {
   const auto ends_before = [s](const Piece& piece) { return piece.end() <= s; };
   const Eigen::Index piece = std::min<Eigen::Index>(
       std::count_if(pieces_.begin(), pieces_.end(), ends_before), std::ssize(pieces_) - 1);
-  const Piece& own = pieces_[static_cast<std::size_t>(piece)];
-  return points(piece, Eigen::VectorXd::Constant(1, (s - own.begin) / own.length)).weights(0);
+  return at(piece, s).position;
 }
 
 PositionOperator::Point PositionOperator::at(Eigen::Index piece, double s) const {
@@ -103,7 +86,8 @@ PositionOperator::Point PositionOperator::at(Eigen::Index piece, double s) const
   Eigen::MatrixXd of_terms(Q, 3);
   legendre(xi, of_terms.col(1), of_terms.col(0));
   legendre_slopes(xi, of_terms.col(2));
-  const Eigen::MatrixXd weights = through(of_terms);
+  // Weights of the element's nodes in functionals of the Legendre series through their values.
+  const Eigen::MatrixXd weights = table_->weights.asDiagonal() * (table_->values * of_terms);
   Point point;
   point.position = begin(piece);
   point.position.segment(piece * Q, Q) += own.length * weights.col(0);

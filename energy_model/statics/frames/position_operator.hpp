@@ -69,9 +69,6 @@ class PositionOperator {
   /// Returns the weights of the point where an element begins; for the number of elements, of the
   /// span's end.
   [[nodiscard]] Eigen::VectorXd begin(Eigen::Index piece) const;
-  /// Returns the weights of points of an element. @param shares  positions of the points, divided
-  /// by the element's length
-  [[nodiscard]] PointsReach points(Eigen::Index piece, const Eigen::VectorXd& shares) const;
   /// Returns the weights of the point where an element begins, as the only point.
   [[nodiscard]] PointsReach at_begin(Eigen::Index piece) const;
   /// Returns the weights of an element's begin, of its nodes and of its end.
@@ -88,8 +85,6 @@ class PositionOperator {
   [[nodiscard]] Point at(Eigen::Index piece, double s) const;
 
  private:
-  [[nodiscard]] Eigen::MatrixXd through(const Eigen::MatrixXd& of_terms) const;
-
   std::vector<Piece> pieces_;
   const LegendreTable* table_ = nullptr;
   double anchor_ = 0;
