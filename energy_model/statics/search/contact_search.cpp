@@ -58,8 +58,7 @@ class ContactSearch {
     const bool starts = start.field && !options_.wants_all();
     if (starts && start.known.model) {
       SpanSolution followed = follow_contacts(span_, options_, workspace_);
-      const bool is_known = followed.is_equilibrium() || followed.is_singular_point();
-      if (is_known || options_.only_follows()) (void)found_.add(std::move(followed));
+      if (followed.is_known() || options_.only_follows()) (void)found_.add(std::move(followed));
     }
     if (options_.only_follows()) return;
     if (found_.empty()) {

@@ -139,7 +139,6 @@ class EnergySolver::State {
       followed_ = false;
       if (from == From::last_shape_only) return {};
       former_ = std::exchange(remembered_, {});
-      former_twists_ = std::exchange(twists_, {});
       return {std::move(*known)};
     }
     std::vector<PlacedSpan> placed = split(problem);
@@ -148,7 +147,6 @@ class EnergySolver::State {
       require_affordable(span.span, options_.terms, "solve_energy");
     }
     former_ = remembered_;
-    former_twists_ = twists_;
     std::vector<Equilibrium> result =
         solve_without_similar_obstacles(problem, placed, wanted, from, deadline);
     if (result.empty()) result = solve_placed(problem, placed, wanted, from, deadline);
@@ -161,10 +159,7 @@ class EnergySolver::State {
     return result;
   }
 
-  void undo() {
-    remembered_ = former_;
-    twists_ = former_twists_;
-  }
+  void undo() { remembered_ = former_; }
 
   /// Descends from a shape, without a further search.
   Equilibrium near(const Problem& problem, const Equilibrium& shape) {
@@ -216,9 +211,7 @@ class EnergySolver::State {
       if (entered == preferred && exchange > 0) break;
       preferred = entered;
     }
-    remembered_ = former_;
-    twists_ = former_twists_;
-    return {};
+    return undone();
   }
 
   /// Solves the spans and assembles them. @return equilibria; empty if From::last_shape_only does
@@ -231,7 +224,6 @@ class EnergySolver::State {
     if (only && !warm) return {};
     log_ = {};
     remembered_.resize(placed.size());
-    twists_.resize(placed.size());
     std::vector<std::vector<SpanSolution>> solutions;
     solutions.reserve(placed.size());
     int passing_starts = 0;
@@ -268,21 +260,19 @@ class EnergySolver::State {
   [[nodiscard]] std::vector<SpanSolution> solve_span_at(std::size_t index, const PlacedSpan& placed,
                                                         const Problem& problem,
                                                         const SpanOptions& options, bool warm) {
+    Remembered& memory = remembered_[index];
+    if (!warm) memory = {};
     if (placed.frames) {
-      RememberedTwist& memory = twists_[index];
-      if (!warm) memory = {};
       std::vector<SpanSolution> found =
           solve_twisted(placed, problem, options, options_.start, memory, workspace_);
       memory.twisted.remember(found.front(), placed);
       if (memory.twisted.is_known()) memory.twist = found.front().model->twist(found.front().x);
       return found;
     }
-    Remembered& memory = remembered_[index];
-    const Remembered* last = warm && memory.is_known() ? &memory : nullptr;
-    const Equilibrium* start = last != nullptr ? nullptr : options_.start;
+    const Equilibrium* start = memory.untwisted.is_known() ? nullptr : options_.start;
     std::vector<SpanSolution> found =
-        solve_untwisted(placed, problem, options, start, last, workspace_);
-    memory.remember(found.front(), placed);
+        solve_untwisted(placed, problem, options, start, memory.untwisted, workspace_);
+    memory.untwisted.remember(found.front(), placed);
     return found;
   }
 
@@ -290,9 +280,7 @@ class EnergySolver::State {
   SearchLog log_;
   bool followed_ = false;
   SpanWorkspace workspace_;
-  std::vector<Remembered> remembered_,
-      former_;                                           // after the last call and before it
-  std::vector<RememberedTwist> twists_, former_twists_;  // after the last call and before it
+  std::vector<Remembered> remembered_, former_;  // after the last call and before it
 };
 
 EnergySolver::EnergySolver(const EnergyOptions& options)

@@ -168,11 +168,6 @@ constexpr int terms_of_guess = 24;
 constexpr const char* rotated_in_small_steps =
     "stable shapes without twist, rotated in small steps";
 
-/// Whether a shape may be followed: an equilibrium, or a singular point.
-bool is_known(const SpanSolution& solution) {
-  return solution.is_equilibrium() || solution.is_singular_point();
-}
-
 class TwistedSpan {
  public:
   TwistedSpan(const PlacedSpan& placed, const Problem& problem, const SpanOptions& options,
@@ -195,7 +190,7 @@ class TwistedSpan {
     SpanSolution solution =
         next_to(field_of(start, placed_, l), {held_end_d1(held_, placed_.span), part->angle},
                 known_contacts(start, placed_, l));
-    if (!is_known(solution)) return std::nullopt;
+    if (!solution.is_known()) return std::nullopt;
     return solution;
   }
 
@@ -227,7 +222,7 @@ class TwistedSpan {
     return solution;
   }
 
-  [[nodiscard]] std::vector<SpanSolution> without_twist(const Remembered* last) const {
+  [[nodiscard]] std::vector<SpanSolution> without_twist(const RememberedShape& last) const {
     SpanOptions options = options_;
     // The log counts the starts, but not the solutions, which are not equilibria of the twisted
     // rod.
@@ -244,12 +239,12 @@ class TwistedSpan {
   }
 
   /// Solves from the last twisted shape, rotated further.
-  [[nodiscard]] SpanSolution followed(const RememberedTwist& memory, double turned,
+  [[nodiscard]] SpanSolution followed(const Remembered& memory, double turned,
                                       const EndFrame& frame) const {
     SpanSolution solution =
         next_to(memory.twisted.field(placed_), {frame.d1, memory.twist + turned},
                 memory.twisted.last.model->span().contacts);
-    solution.followed = is_known(solution);
+    solution.followed = solution.is_known();
     return solution;
   }
 
@@ -316,7 +311,7 @@ class TwistedSpan {
 
 }  // namespace
 
-void Remembered::remember(const SpanSolution& found, const PlacedSpan& placed) {
+void RememberedShape::remember(const SpanSolution& found, const PlacedSpan& placed) {
   before = std::exchange(last, {});
   before.factor = nullptr;
   frame = placed.frame;
@@ -325,7 +320,7 @@ void Remembered::remember(const SpanSolution& found, const PlacedSpan& placed) {
   point = found.at_x();
 }
 
-TangentField Remembered::field(const PlacedSpan& placed) const {
+TangentField RememberedShape::field(const PlacedSpan& placed) const {
   const Eigen::Matrix3d turn = placed.frame * frame.transpose();
   const bool rolls = placed.span.has_material_directors() && !planar();
   return [model = last.model, point = point, turn, rolls](const Eigen::VectorXd& s) {
@@ -346,8 +341,8 @@ TangentField Remembered::field(const PlacedSpan& placed) const {
 
 std::vector<SpanSolution> solve_untwisted(const PlacedSpan& placed, const Problem& problem,
                                           SpanOptions options, const Equilibrium* shape,
-                                          const Remembered* last, SpanWorkspace& workspace) {
-  const bool is_known = shape == nullptr && last != nullptr && last->is_known();
+                                          const RememberedShape& last, SpanWorkspace& workspace) {
+  const bool is_known = shape == nullptr && last.is_known();
   Found found(options);
   // After a failure no shape is known.
   if (options.only_follows() && !is_known) return list_of({});
@@ -357,16 +352,16 @@ std::vector<SpanSolution> solve_untwisted(const PlacedSpan& placed, const Proble
   if (!options.wants_all() && (shape != nullptr || is_known) && !leaves) {
     Span span = placed.span;
     if (is_known) {
-      options.start = {last->field(placed), options.start.approach, last->last, last->before};
-      span.cuts = last->last.model->span().cuts;
-      span.contact_ends = last->last.model->span().contact_ends;
+      options.start = {last.field(placed), options.start.approach, last.last, last.before};
+      span.cuts = last.last.model->span().cuts;
+      span.contact_ends = last.last.model->span().contact_ends;
     } else {
       options.start.field = field_of(*shape, placed, problem.length);
     }
-    const bool may_leave = (shape != nullptr || !last->planar()) && !span.stays_in_plane();
+    const bool may_leave = (shape != nullptr || !last.planar()) && !span.stays_in_plane();
     span.planar = span.planar && !(may_leave && is_out_of_plane(span, options.start.field, tilt));
     SpanSolution followed = from_start(span, options, workspace);
-    const bool ends = !followed.is_equilibrium() && !followed.is_singular_point();
+    const bool ends = !followed.is_known();
     // A failure means that the branch has ended or that the step was too large for it.
     found.spend(ends ? std::exchange(followed.evaluations, 0) : 0);
     if (!ends || options.only_follows() || options.only_descends()) {
@@ -390,7 +385,7 @@ std::vector<SpanSolution> solve_untwisted(const PlacedSpan& placed, const Proble
 
 std::vector<SpanSolution> solve_twisted(const PlacedSpan& placed, const Problem& problem,
                                         const SpanOptions& options, const Equilibrium* start,
-                                        RememberedTwist& memory, SpanWorkspace& workspace) {
+                                        Remembered& memory, SpanWorkspace& workspace) {
   const TwistedSpan span(placed, problem, options, workspace);
   if (options.only_descends()) return list_of(span.downhill_of(*start));
   const bool follows = memory.twisted.is_known() && !options.wants_all();
@@ -399,8 +394,7 @@ std::vector<SpanSolution> solve_twisted(const PlacedSpan& placed, const Problem&
       return list_of(std::move(*known));
     }
   }
-  std::vector<SpanSolution> untwisted =
-      span.without_twist(memory.untwisted.is_known() ? &memory.untwisted : nullptr);
+  std::vector<SpanSolution> untwisted = span.without_twist(memory.untwisted);
   if (!options.wants_all()) untwisted.resize(1);
   SpanSolution& best = untwisted.front();
   memory.untwisted.remember(best, placed);

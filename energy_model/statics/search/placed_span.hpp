@@ -13,7 +13,7 @@
 namespace dlo::energy_model {
 
 /// A span's last solution, from which the next one may start; empty after a failure.
-struct Remembered {
+struct RememberedShape {
   KnownShape last;
   KnownShape before;                                    ///< the one before it, without a factor
   std::shared_ptr<const SpanPoint> point;               ///< point of `last`
@@ -28,9 +28,9 @@ struct Remembered {
   [[nodiscard]] TangentField field(const PlacedSpan& placed) const;
 };
 
-/// Memory of a span that clamps twist, for its solution without twist too.
-struct RememberedTwist {
-  Remembered untwisted, twisted;
+/// Last solutions of a span: without the twist from clamps, and with it if clamps twist the span.
+struct Remembered {
+  RememberedShape untwisted, twisted;
   double twist = 0;   ///< twist of `twisted` [rad]
   double turned = 0;  ///< rotation of the end's frame relative to the untwisted rod's [rad]
 };
@@ -38,11 +38,11 @@ struct RememberedTwist {
 /// Solves a span of a problem without the twist from clamps: from a known shape, if there is one;
 /// otherwise by a search, and from minima of coarse polygons if the search finds no stable shape,
 /// or all are wanted. The list is never empty, best first.
-/// @param shape, last  initial guesses, each may be null; `shape` is used if both are given
+/// @param shape, last  initial guesses; `shape` is used unless it is null, then `last` if known
 [[nodiscard]] std::vector<SpanSolution> solve_untwisted(const PlacedSpan& placed,
                                                         const Problem& problem, SpanOptions options,
                                                         const Equilibrium* shape,
-                                                        const Remembered* last,
+                                                        const RememberedShape& last,
                                                         SpanWorkspace& workspace);
 
 /// Solves a span between clamps that prescribe frames: from a shape whose twist is known, if there
@@ -51,8 +51,10 @@ struct RememberedTwist {
 /// @param start  null: none is known
 /// @param memory  of the last call, empty if nothing is to be followed; the shape without twist is
 ///   updated
-[[nodiscard]] std::vector<SpanSolution> solve_twisted(
-    const PlacedSpan& placed, const Problem& problem, const SpanOptions& options,
-    const Equilibrium* start, RememberedTwist& memory, SpanWorkspace& workspace);
+[[nodiscard]] std::vector<SpanSolution> solve_twisted(const PlacedSpan& placed,
+                                                      const Problem& problem,
+                                                      const SpanOptions& options,
+                                                      const Equilibrium* start, Remembered& memory,
+                                                      SpanWorkspace& workspace);
 
 }  // namespace dlo::energy_model

@@ -79,6 +79,8 @@ struct [[nodiscard]] SpanSolution {
   [[nodiscard]] bool is_equilibrium() const {
     return succeeded(status) || status == SolveStatus::saddle;
   }
+  /// Whether the shape may be followed: an equilibrium, or a singular point.
+  [[nodiscard]] bool is_known() const { return is_equilibrium() || is_singular_point(); }
 };
 
 }  // namespace dlo::energy_model
