@@ -51,13 +51,6 @@ constexpr int coarse_unknowns = 100;
 /// Number of coefficients that resolve a boundary layer over six of its lengths.
 constexpr int layer_terms = 20;
 
-/// Returns the unknowns of a ranked start in another model.
-Eigen::VectorXd unknowns_of(const Start& start, SpanEnergy& model) {
-  Eigen::VectorXd x = model.prolong(*start.model, start.x);
-  model.unwrap(x);
-  return x;
-}
-
 }  // namespace
 
 SpanTraits::SpanTraits(const Span& span)
@@ -135,7 +128,7 @@ SpanSolution LocalSolver::from_start(const Start& from) {
   int spent = 0;
   for (int count = coarse_terms();; count *= 2) {
     solution = empty_solution(std::min(count, max_terms));
-    solution.x = from.model ? unknowns_of(from, *solution.model)
+    solution.x = from.model ? solution.model->prolong(*from.model, from.x)
                             : solution.model->fit(from.field(solution.model->nodes()));
     const Eigen::VectorXd start = solution.x;
     // For a taut rod such a start is already close to the shape.
@@ -150,10 +143,7 @@ SpanSolution LocalSolver::from_start(const Start& from) {
         !solution.model->has_soft_obstacles()) {
       solution.x = start;
       solution.multipliers.resize(0);
-      descend_by_augmented_lagrangian(
-          solution,
-          {.load = traits_.load, .deadline = &options_.deadline, .stiffness = traits_.stiffness});
-      if (succeeded(solution.status)) newton(solution);
+      descend_to_constraints(solution);
     }
     spent += solution.evaluations;
     solution.evaluations = spent;
@@ -162,6 +152,13 @@ SpanSolution LocalSolver::from_start(const Start& from) {
     const bool more = 2 * solution.model->size() <= most_descended && options_.terms == 0;
     if (!more || out_of_time()) return solution;
   }
+}
+
+void LocalSolver::descend_to_constraints(SpanSolution& solution) const {
+  descend_by_augmented_lagrangian(
+      solution,
+      {.load = traits_.load, .deadline = &options_.deadline, .stiffness = traits_.stiffness});
+  if (succeeded(solution.status)) newton(solution);
 }
 
 SpanSolution LocalSolver::newton_from(const TangentField& field) {

@@ -101,6 +101,9 @@ class LocalSolver {
   /// Descends from solution.x by NLopt or, between grips, in a trust region; then runs Newton's
   /// method.
   void descend(SpanSolution& solution);
+  /// Descends from solution.x by the method of multipliers, also from a shape from which the
+  /// constraints cannot be restored; then runs Newton's method.
+  void descend_to_constraints(SpanSolution& solution) const;
 
  private:
   [[nodiscard]] bool prolong_known(const StartShape& wanted, SpanSolution& solution) const;

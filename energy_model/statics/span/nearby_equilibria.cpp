@@ -73,10 +73,7 @@ std::optional<SpanSolution> start_on_adapted_mesh(const LocalSolver& on) {
   if (!solution.is_equilibrium()) {
     solution = own.empty_solution(own.terms());
     solution.x = solution.model->fit(start.field(solution.model->nodes()));
-    descend_by_augmented_lagrangian(solution, {.load = own.traits().load,
-                                               .deadline = &on.options().deadline,
-                                               .stiffness = own.traits().stiffness});
-    if (succeeded(solution.status)) own.newton(solution);
+    own.descend_to_constraints(solution);
     solution.evaluations += spent;
   }
   solution = refined(own, std::move(solution));

@@ -154,10 +154,7 @@ class Refinement {
     if (!finer.is_equilibrium() && !finer.model->has_soft_obstacles()) {
       finer.x = x;
       finer.multipliers = multipliers;
-      descend_by_augmented_lagrangian(finer, {.load = traits_.load,
-                                              .deadline = &on_.options().deadline,
-                                              .stiffness = traits_.stiffness});
-      if (succeeded(finer.status)) on_.newton(finer);
+      on_.descend_to_constraints(finer);
     }
     finer.evaluations += solution.evaluations;
     return finer;

@@ -181,22 +181,10 @@ double GripRows::gap(const Eigen::Matrix3Xd& tangents) const {
   return std::sqrt(squared);
 }
 
-void GripRows::unwrap(const Eigen::VectorXd& angles, Eigen::Index nodes_of_piece) {
-  for (DirectionRow& row : directions_) {
-    row.angle = nearest_turn(row.angle, angles[(row.piece + 1) * nodes_of_piece - 1]);
-  }
-}
-
 void GripRows::unwrap(const Eigen::Ref<const Eigen::VectorXd>& x, double start_theta) {
   for (Eigen::Index i = 0; i < directions(); ++i) {
     double& angle = directions_[static_cast<std::size_t>(i)].angle;
     angle = nearest_turn(angle, start_theta + held_angle_.row(i).dot(x));
-  }
-}
-
-void GripRows::unwrap(const GripRows& other) {
-  for (std::size_t i = 0; i < directions_.size(); ++i) {
-    directions_[i].angle = other.directions_[i].angle;
   }
 }
 

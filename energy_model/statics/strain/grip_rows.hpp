@@ -85,12 +85,8 @@ class GripRows {
   /// Returns the root of the sum of the squared distances by which a shape with these tangents at
   /// the nodes (3 x nodes) misses the grips.
   [[nodiscard]] double gap(const Eigen::Matrix3Xd& tangents) const;
-  /// Shifts the clamps' angles by multiples of 2 pi to the winding of a shape, given by its angles
-  /// at the nodes or by its unknowns; in the plane.
-  void unwrap(const Eigen::VectorXd& angles, Eigen::Index nodes_of_piece);
+  /// Shifts the clamps' angles by multiples of 2 pi to the winding of a shape; in the plane.
   void unwrap(const Eigen::Ref<const Eigen::VectorXd>& x, double start_theta);
-  /// Copies the winding of another model's rows for the same span.
-  void unwrap(const GripRows& other);
   /// Sets the direction and d1 of the clamp at the end.
   void turn_end_clamp(const Eigen::Vector3d& direction, const Eigen::Vector3d& d1);
 

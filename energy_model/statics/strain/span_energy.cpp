@@ -268,25 +268,21 @@ Eigen::VectorXd SpanEnergy::fit(const StartShape& shape, int most_steps) {
     if (unknowns_.fields == 3 && shape.roll.size() > 0) x = rolled(frames_, x, shape.roll);
     return has_psi() ? with_twist(std::move(x), shape.twist) : x;
   }
-  const Eigen::VectorXd angles = plane_.angles(shape.tangents);
-  grips_.unwrap(angles, table_->nodes.size());
-  revise();
-  return plane_.fit(angles);
+  Eigen::VectorXd x = plane_.fit(plane_.angles(shape.tangents));
+  unwrap(x);
+  return x;
 }
 
+/// Shifts the clamps' angles by multiples of 2 pi to the winding of these unknowns, in the plane.
 void SpanEnergy::unwrap(const Eigen::Ref<const Eigen::VectorXd>& x) {
-  if (!span_.planar) return;
   grips_.unwrap(x, plane_.start_theta());
   revise();
 }
 
 Eigen::VectorXd SpanEnergy::prolong(const SpanEnergy& other, const Eigen::VectorXd& x) {
-  if (other.span_.planar && span_.planar) {
-    grips_.unwrap(other.grips_);
-    revise();
-  }
   // The curvature of a planar shape is u1.
   Eigen::VectorXd prolonged = unknowns_.prolong(other.unknowns_, x);
+  if (span_.planar) unwrap(prolonged);
   if (unknowns_.free_start == 1 && other.span_.planar && !span_.planar) {
     prolonged[0] = nearest_turn(x[0] - angle_of(start_frame_.col(2)), 0);
   }

@@ -93,11 +93,8 @@ class SpanEnergy {
   };
   [[nodiscard]] Estimate estimate(const Eigen::Matrix3Xd& tangents) const;
 
-  /// Shifts the clamps' angles by multiples of 2 pi to the winding of these unknowns.
-  void unwrap(const Eigen::Ref<const Eigen::VectorXd>& x);
-
   /// Returns the unknowns of a shape that was found with another number of coefficients, or in the
-  /// plane.
+  /// plane. Also shifts the clamps' angles to the winding of this shape.
   [[nodiscard]] Eigen::VectorXd prolong(const SpanEnergy& other, const Eigen::VectorXd& x);
 
   [[nodiscard]] const SpanUnknowns& unknowns() const { return unknowns_; }
@@ -184,6 +181,7 @@ class SpanEnergy {
                      Eigen::Ref<Eigen::MatrixXd> hessian) const;
   void carry(SpanPoint& at, const Eigen::Ref<const Eigen::VectorXd>& multipliers) const;
   void carry_tilts(SpanPoint& at, const Eigen::Ref<const Eigen::VectorXd>& multipliers) const;
+  void unwrap(const Eigen::Ref<const Eigen::VectorXd>& x);
   void revise();
 
   Span span_;
