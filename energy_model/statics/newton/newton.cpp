@@ -198,8 +198,7 @@ NewtonIteration::Outcome NewtonIteration::judge_move(double moved) {
   // With constraints the caller examines the second variation, so that a factor from farther away
   // may be kept. Without constraints the factor itself shows whether the Hessian is positive
   // definite.
-  const bool near = moved * (1 + options_.load) <= factor_reach &&
-                    !(borrowed && options_.first_hessian != nullptr);
+  const bool near = moved * (1 + options_.load) <= factor_reach;
   const bool shrinks = solution_.next_step < fast_contraction * moved && model_.constraints() > 0;
   near || shrinks ? step_.reuse() : step_.give_up_factor();
   return Outcome::goes_on;

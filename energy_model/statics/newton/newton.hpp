@@ -38,22 +38,10 @@ class NewtonFactors {
   /// @param load  weight plus loads
   void factor_at(SpanSolution& solution, SpanPoint& at, double load);
 
-  /// Factors a Hessian that does not belong to a point of the model.
-  [[nodiscard]] std::shared_ptr<NewtonFactor> factor(const Eigen::MatrixXd& hessian,
-                                                     const Eigen::MatrixXd& jacobian, double scale);
-
  private:
-  [[nodiscard]] std::shared_ptr<NewtonFactor> make(const Eigen::MatrixXd& jacobian, double scale);
-
   Pool<NewtonFactor> factors_;
   Eigen::MatrixXd hessian_;  // Hessian of the next factor
 };
-
-/// Returns an approximate Hessian of a model with more coefficients: the Hessian of the model with
-/// fewer, and the identity for the new ones, where bending exceeds the effect of forces by the
-/// square of the order.
-[[nodiscard]] Eigen::MatrixXd prolonged(const Eigen::MatrixXd& hessian, const SpanEnergy& fewer,
-                                        const SpanEnergy& model);
 
 /// Broyden's updates of Newton steps that use the factor of an earlier point. The steps converge
 /// superlinearly and cost only products of vectors (Deuflhard, Newton Methods for Nonlinear
@@ -113,9 +101,6 @@ struct NewtonOptions {
   /// Factor of another shape for the first steps between grips; used if its numbers of unknowns and
   /// constraints are the same.
   std::shared_ptr<NewtonFactor> first_factor = nullptr;
-  /// Hessian for the first steps, factored with the shape's own constraint Jacobian; used before
-  /// first_factor.
-  const Eigen::MatrixXd* first_hessian = nullptr;
   const Deadline* deadline = nullptr;  ///< ends the iteration as `time_limit`; null: none
 };
 

@@ -17,7 +17,7 @@ class NewtonStep {
   NewtonStep(SpanSolution& solution, const NewtonOptions& options, NewtonBuffers& buffers)
       : solution_(solution), options_(options), buffers_(buffers) {}
 
-  /// Uses the factor or Hessian given in the options, if there is one.
+  /// Uses the factor given in the options, if there is one.
   void borrow();
   /// Factors at the present solution.
   void factor();

@@ -135,19 +135,12 @@ class Refinement {
     return K + more;
   }
 
-  /// Solves with more coefficients. @param solution  its factor is used up
-  [[nodiscard]] SpanSolution with_terms(SpanSolution& solution, int terms) {
+  /// Solves with more coefficients.
+  [[nodiscard]] SpanSolution with_terms(const SpanSolution& solution, int terms) {
     SpanSolution finer = on_.workspace().with_terms(solution, terms);
     const Eigen::VectorXd x = finer.x;
     const Eigen::VectorXd multipliers = finer.multipliers;
-    if (solution.factor) {
-      const Eigen::MatrixXd hessian =
-          prolonged(solution.factor->system.hessian(), *solution.model, *finer.model);
-      solution.factor.reset();
-      on_.newton(finer, {.first_hessian = &hessian});
-    } else {
-      on_.newton(finer);
-    }
+    on_.newton(finer);
     const bool descends = finer.model->size() <= most_descended;
     if (descends && (!finer.is_equilibrium() || finer.model->has_soft_obstacles()))
       on_.descend(finer);

@@ -2,7 +2,6 @@
 
 #include <Eigen/Core>
 #include <algorithm>
-#include <vector>
 
 namespace dlo::energy_model {
 
@@ -29,19 +28,6 @@ struct SpanUnknowns {
     for (Eigen::Index f = 0; f < fields && free_start == 1; ++f) x[f * columns()] = 0;
   }
 
-  /// Returns the indices here of the unknowns of the same span with at most as many coefficients.
-  [[nodiscard]] std::vector<Eigen::Index> places_of(const SpanUnknowns& coarse) const {
-    std::vector<Eigen::Index> places;
-    places.reserve(static_cast<std::size_t>(coarse.size()));
-    for (Eigen::Index field = 0; field < fields; ++field) {
-      if (free_start == 1) places.push_back(field * columns());
-      for (Eigen::Index e = 0; e < pieces; ++e) {
-        for (Eigen::Index k = 0; k < coarse.terms; ++k) places.push_back(first(field, e) + k);
-      }
-    }
-    if (has_psi) places.push_back(strains());
-    return places;
-  }
   /// Returns unknowns with the coefficients of the same span with other numbers of coefficients or
   /// fields; the others are 0.
   [[nodiscard]] Eigen::VectorXd prolong(const SpanUnknowns& from, const Eigen::VectorXd& x) const {
