@@ -312,8 +312,7 @@ class TwistedSpan {
 }  // namespace
 
 void RememberedShape::remember(const SpanSolution& found, const PlacedSpan& placed) {
-  before = std::exchange(last, {});
-  before.factor = nullptr;
+  last = {};
   frame = placed.frame;
   if (!succeeded(found.status) && !found.is_singular_point()) return;
   last = {found.model, found.x, found.multipliers, found.factor};
@@ -352,7 +351,7 @@ std::vector<SpanSolution> solve_untwisted(const PlacedSpan& placed, const Proble
   if (!options.wants_all() && (shape != nullptr || is_known) && !leaves) {
     Span span = placed.span;
     if (is_known) {
-      options.start = {last.field(placed), options.start.approach, last.last, last.before};
+      options.start = {last.field(placed), options.start.approach, last.last};
       span.cuts = last.last.model->span().cuts;
       span.contact_ends = last.last.model->span().contact_ends;
     } else {

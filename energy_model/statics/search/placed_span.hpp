@@ -15,7 +15,6 @@ namespace dlo::energy_model {
 /// A span's last solution, from which the next one may start; empty after a failure.
 struct RememberedShape {
   KnownShape last;
-  KnownShape before;                                    ///< the one before it, without a factor
   std::shared_ptr<const SpanPoint> point;               ///< point of `last`
   Eigen::Matrix3d frame = Eigen::Matrix3d::Identity();  ///< PlacedSpan::frame
 

@@ -43,8 +43,7 @@ inline constexpr double followed_tangents = 0.3;
 struct SpanStart {
   TangentField field;  ///< empty: there is no such shape
   Approach approach = Approach::follow;
-  KnownShape known;   ///< the shape of `field`, if it is a span's solution that is followed
-  KnownShape before;  ///< the shape known before `known`, on the same path
+  KnownShape known;  ///< the shape of `field`, if it is a span's solution that is followed
 };
 
 struct SpanOptions {
