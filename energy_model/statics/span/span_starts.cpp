@@ -235,56 +235,9 @@ std::array<double, 2> angles_of_class(double angle) {
   return {nearest, nearest - std::copysign(4 * pi, nearest)};
 }
 
-/// Returns the stress-free shape with its frames rotated evenly, about an axis fixed in them, so
-/// that they meet the end's frame.
-std::vector<TangentField> bent_to_end(const Span& span, const SpanShape& free) {
-  const auto frames_at = [free](const Eigen::VectorXd& s) {
-    const SpanSamples at = free.sample({s.data(), static_cast<std::size_t>(s.size())});
-    std::vector<Eigen::Quaterniond> frames;
-    for (Eigen::Index q = 0; q < s.size(); ++q) {
-      frames.emplace_back(frame_along(at.tangents.col(q), at.d1.col(q)));
-      // Consecutive unit quaternions have to be continuous.
-      if (q > 0 && frames.back().dot(frames[frames.size() - 2]) < 0) frames.back().coeffs() *= -1;
-    }
-    return frames;
-  };
-  const Eigen::Vector3d& start = *span.start_direction;
-  const Eigen::Vector3d& end = *span.end_direction;
-  const auto closing = shortest_rotation(start, end, span.holds.back().offset / span.length);
-  if (!closing) return {};
-  const double half = pi * *span.twist->turns;
-  Eigen::Quaterniond turned;
-  turned.w() = std::cos(half);
-  turned.vec() = std::sin(half) * end;
-  const std::vector<Eigen::Quaterniond> free_frames = frames_at(compared_at(span));
-  const Eigen::Quaterniond held = turned * *closing * free_frames.front();
-  const Eigen::Quaterniond rest = free_frames.back().conjugate() * held;
-  if (!(rest.vec().norm() > 0)) return {};
-  const Eigen::Vector3d axis = rest.vec().normalized();
-  std::vector<TangentField> fields;
-  for (const double angle : angles_of_class(2 * std::atan2(rest.vec().norm(), rest.w()))) {
-    fields.emplace_back([=, length = span.length](const Eigen::VectorXd& s) {
-      const std::vector<Eigen::Quaterniond> frames = frames_at(s);
-      Eigen::Matrix3Xd tangents(3, s.size());
-      Eigen::Matrix3Xd d1(3, s.size());
-      for (Eigen::Index q = 0; q < s.size(); ++q) {
-        const Eigen::Matrix3d frame = (frames[static_cast<std::size_t>(q)] *
-                                       from_rotation_vector(angle * s[q] / length * axis))
-                                          .toRotationMatrix();
-        tangents.col(q) = frame.col(2);
-        d1.col(q) = frame.col(0);
-      }
-      return StartShape(tangents, roll_of(tangents, d1));
-    });
-  }
-  return fields;
-}
-
 /// natural_fields() with a prescribed frame at the end.
 std::vector<TangentField> held_fields(const Span& span) {
-  SpanEnergy model(span, natural_shape_terms);
-  const SpanShape free = model.shape(Eigen::VectorXd::Zero(model.size()));
-  std::vector<TangentField> fields = bent_to_end(span, free);
+  std::vector<TangentField> fields;
   const Eigen::VectorXd s = compared_at(span);
   const Eigen::Vector3d chord = span.holds.back().offset / span.length;
   for (const TangentField& plain : start_fields(span)) {
@@ -355,18 +308,6 @@ std::vector<TangentField> natural_fields(const Span& span) {
     const SpanSamples samples = free.sample({s.data(), static_cast<std::size_t>(s.size())});
     return StartShape(samples.tangents, roll_of(samples.tangents, samples.d1));
   });
-  if (span.planar && span.start_direction && span.end_direction) {
-    const auto angle_of = [](const Eigen::Vector3d& t) { return std::atan2(t.y(), t.x()); };
-    const double start = angle_of(*span.start_direction);
-    const double end = start + span.natural.integral(span.length).x();
-    const double least = std::remainder(angle_of(*span.end_direction) - end, 2 * pi);
-    for (const int turns : {0, 1, -1}) {
-      fields.push_back(field([&span, start, more = (least + 2 * pi * turns)](double s) {
-        const double angle = start + span.natural.integral(s).x() + more * s / span.length;
-        return Eigen::Vector3d(std::cos(angle), std::sin(angle), 0);
-      }));
-    }
-  }
   for (const TangentField& plain : start_fields(span)) {
     fields.push_back(plain);
     if (span.planar) continue;

@@ -23,12 +23,11 @@ namespace dlo::energy_model {
 /// @param span  has to outlive the result
 [[nodiscard]] TangentField arch_field(const Span& span);
 
-/// Returns initial guesses for a rod with material directors: the stress-free shape; in the plane
-/// also that shape bent evenly so that it ends in the direction of the end's clamp; and the shapes
-/// of start_fields(), in space each with the rod's frame rotated evenly along the rod, to several
-/// angles. If the frame at the end is prescribed too, these shapes get frames that are rotated
-/// evenly until they meet it, by the two angles of the class of Span::Twist::turns that are nearest
-/// to zero.
+/// Returns initial guesses for a rod with material directors: the stress-free shape, and the
+/// shapes of start_fields(), in space each with the rod's frame rotated evenly along the rod, to
+/// several angles. If the frame at the end is prescribed too, the shapes of start_fields() with
+/// frames that are rotated evenly until they meet it, by the two angles of the class of
+/// Span::Twist::turns that are nearest to zero.
 [[nodiscard]] std::vector<TangentField> natural_fields(const Span& span);
 
 }  // namespace dlo::energy_model
