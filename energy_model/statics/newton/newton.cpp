@@ -198,7 +198,8 @@ NewtonIteration::Outcome NewtonIteration::judge_move(double moved) {
   // With constraints the caller examines the second variation, so that a factor from farther away
   // may be kept. Without constraints the factor itself shows whether the Hessian is positive
   // definite.
-  const bool near = moved * (1 + options_.load) <= factor_reach;
+  // A yielding obstacle that is touched or left changes the Hessian within any distance.
+  const bool near = moved * (1 + options_.load) <= factor_reach && !model_.has_soft_obstacles();
   const bool shrinks = solution_.next_step < fast_contraction * moved && model_.constraints() > 0;
   near || shrinks ? step_.reuse() : step_.give_up_factor();
   return Outcome::goes_on;
