@@ -26,15 +26,9 @@ namespace dlo::energy_model {
 [[nodiscard]] Eigen::Matrix3Xd tangents_of(const std::vector<RodState>& states);
 [[nodiscard]] std::vector<Eigen::Matrix3d> frames_of(const std::vector<RodState>& states);
 
-/// Derivatives of a RodState by parameters, one per column.
-struct RodVariation {
-  Eigen::Matrix3Xd r;
-  Eigen::Matrix3Xd spin;  ///< spin of R: dR = spin x R
-  Eigen::Matrix3Xd m;
-  Eigen::Matrix3Xd n;
-
-  explicit RodVariation(Eigen::Index parameters = 0);
-};
+/// Derivatives of a RodState, one per column. Rows: r, the spin of R (dR = spin x R), m and n,
+/// three each.
+using RodVariation = Eigen::Matrix<double, 12, Eigen::Dynamic>;
 
 /// Integrals over a piece of the rod.
 struct RodIntegrals {
@@ -58,14 +52,8 @@ struct RodPiece {
 /// Returns an interval of a mesh as a piece. Span and mesh have to outlive it.
 [[nodiscard]] RodPiece piece_of(const RodSpan& span, const RodMesh& mesh, Eigen::Index interval);
 
-/// Derivatives of a cross-section by the arc length at the begin of a piece.
-struct RodRate {
-  Eigen::Vector3d r;
-  Eigen::Vector3d spin;  ///< spin of R: R' = spin x R
-  Eigen::Vector3d m;
-  Eigen::Vector3d n;
-};
-[[nodiscard]] RodRate rate_of(const RodPiece& piece, const RodState& state);
+/// Returns the derivatives of a cross-section by the arc length at the begin of a piece.
+[[nodiscard]] Eigen::Matrix<double, 12, 1> rate_of(const RodPiece& piece, const RodState& state);
 
 /// Integrates the rod's equations over a piece,
 ///     r' = t,   R' = R hat(u),   m' = n x t,   n' = -w - f(t), and -w - p N where it lies,
@@ -77,14 +65,10 @@ struct RodRate {
 /// Rotations are integrated as nine matrix components; a parametrisation by angles would have
 /// singularities.
 /// @param tolerance  local error per step, relative to 1 + |component|
-/// @param[in,out] state, variation  from the begin of the piece to its end
-/// @param[out] integrals  of the piece
+/// @param[in,out] state, variation  from the begin of the piece to its end; no variation if null
+/// @param[out] integrals  integrals over the piece; not returned if null
 /// @return false if the integrator failed
 [[nodiscard]] bool follow_rod(const RodPiece& piece, double tolerance, RodState& state,
-                              RodVariation& variation, RodIntegrals& integrals);
-
-/// Integrates the rod's equations over a piece without linearisation.
-[[nodiscard]] bool follow_rod(const RodPiece& piece, double tolerance, RodState& state,
-                              RodIntegrals& integrals);
+                              RodVariation* variation = nullptr, RodIntegrals* integrals = nullptr);
 
 }  // namespace dlo::energy_model

@@ -21,7 +21,7 @@ void add_energies(const RodSpan& span, double tolerance, SpanEquilibrium& equili
     equilibrium.energy.load -= mesh.load.col(i).dot(state.r);
     if (i == mesh.intervals()) break;
     RodIntegrals integrals;
-    if (!follow_rod(piece_of(span, mesh, i), tolerance, state, integrals)) {
+    if (!follow_rod(piece_of(span, mesh, i), tolerance, state, nullptr, &integrals)) {
       equilibrium.converged = false;
       equilibrium.message = "the integrator failed while computing the energies";
       equilibrium.energy = {NAN, NAN, NAN, NAN};
@@ -153,8 +153,7 @@ std::vector<RodState> states_at(const SpanEquilibrium& equilibrium, const RodSpa
     if (at > reached) {
       const RodPiece piece{section_at(span, (nodes[i] + nodes[i + 1]) / 2), span.natural, reached,
                            at - reached, equilibrium.contacts.surface_of(i)};
-      RodIntegrals integrals;
-      if (!follow_rod(piece, tolerance, state, integrals)) {
+      if (!follow_rod(piece, tolerance, state)) {
         state.r.setConstant(std::numeric_limits<double>::quiet_NaN());
         state.R.setConstant(std::numeric_limits<double>::quiet_NaN());
       }
@@ -179,8 +178,7 @@ void carry_frames(const RodSpan& span, const RodMesh& mesh, double tolerance,
   const auto carried = [&](std::size_t i) {
     RodState state = states[i];
     const auto interval = static_cast<Eigen::Index>(i);
-    RodIntegrals integrals;
-    const bool followed = follow_rod(piece_of(span, mesh, interval), tolerance, state, integrals);
+    const bool followed = follow_rod(piece_of(span, mesh, interval), tolerance, state);
     return transported(followed ? state.R : states[i].R, states[i + 1].t());
   };
   for (std::size_t i = first; i + 1 < states.size(); ++i) states[i + 1].R = carried(i);

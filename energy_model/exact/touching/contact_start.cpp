@@ -207,8 +207,7 @@ class Layout {
         }
         if (i + 1 == contact.end) break;
         RodState end = state;
-        RodIntegrals integrals;
-        if (!follow_rod(piece_of(start_.span, start_.mesh, i), tolerance, end, integrals)) {
+        if (!follow_rod(piece_of(start_.span, start_.mesh, i), tolerance, end)) {
           return false;
         }
         start_.states[static_cast<std::size_t>(i + 1)].n = end.n;
