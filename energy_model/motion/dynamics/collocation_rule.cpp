@@ -8,16 +8,6 @@
 namespace dlo::energy_model {
 namespace {
 
-/// Returns the matrix whose eigenvalues are the roots of Legendre's polynomial (Golub and Welsch).
-Eigen::MatrixXd jacobi_matrix(int stages) {
-  Eigen::MatrixXd result = Eigen::MatrixXd::Zero(stages, stages);
-  for (int i = 1; i < stages; ++i) {
-    result(i, i - 1) = i / std::sqrt(4.0 * i * i - 1);
-    result(i - 1, i) = result(i, i - 1);
-  }
-  return result;
-}
-
 /// Returns the collocation rule of given nodes. @param nodes  on [-1, 1]
 CollocationRule rule_at(const Eigen::VectorXd& nodes) {
   const Eigen::Index stages = nodes.size();
@@ -57,21 +47,15 @@ Eigen::MatrixXd CollocationRule::extrapolation(double ratio) const {
   return result;
 }
 
-CollocationRule gauss_rule(int stages) {
-  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> solver(jacobi_matrix(stages));
-  return rule_at(solver.eigenvalues());
+CollocationRule gauss_rule() {
+  constexpr double inner = 0.339981043584856264802665759103;
+  constexpr double outer = 0.861136311594052575223946488893;
+  return rule_at(Eigen::Vector4d(-outer, -inner, inner, outer));
 }
 
-CollocationRule radau_rule(int stages) {
-  // The last diagonal entry makes 1 an eigenvalue (Golub). It is 1 - b^2 p_(n-1)(1) / p_n(1) with n
-  // = stages - 1, monic polynomials p and the last off-diagonal entry b; for Legendre's polynomials
-  // that is (n + 1) / (2 n + 1).
-  Eigen::MatrixXd jacobi = jacobi_matrix(stages);
-  jacobi(stages - 1, stages - 1) = stages / (2.0 * stages - 1);
-  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> solver(jacobi);
-  Eigen::VectorXd nodes = solver.eigenvalues();
-  nodes[stages - 1] = 1;
-  return rule_at(nodes);
+CollocationRule radau_rule() {
+  return rule_at(
+      Eigen::Vector4d(-0.822824080974592105, -0.181066271118530578, 0.575318923521694113, 1));
 }
 
 }  // namespace dlo::energy_model

@@ -39,7 +39,7 @@ SpanIntegrator::SpanIntegrator(SpanDynamics& span, std::function<SpanDrive(doubl
     : span_(span),
       drive_(std::move(drive)),
       options_(options),
-      rule_(options.damped ? radau_rule(stage_count) : gauss_rule(stage_count)),
+      rule_(options.damped ? radau_rule() : gauss_rule()),
       newton_enough_(std::clamp(newton_share * options_.tolerance, newton_least, newton_most)) {}
 
 bool SpanIntegrator::same_instant(double a, double b) {

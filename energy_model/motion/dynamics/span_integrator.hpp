@@ -29,13 +29,13 @@ struct CollocationRule {
   [[nodiscard]] Eigen::MatrixXd extrapolation(double ratio) const;
 };
 
-/// Returns Gauss's rule. Its order is twice the number of stages; it is symmetric and does not damp
+/// Returns Gauss's rule of four stages. Its order is eight; it is symmetric and does not damp
 /// vibrations.
-[[nodiscard]] CollocationRule gauss_rule(int stages);
+[[nodiscard]] CollocationRule gauss_rule();
 
-/// Returns the Radau IIA rule. Its order is twice the number of stages minus one; it damps fast
-/// decaying components within a step.
-[[nodiscard]] CollocationRule radau_rule(int stages);
+/// Returns the Radau IIA rule of four stages. Its order is seven; it damps fast decaying components
+/// within a step.
+[[nodiscard]] CollocationRule radau_rule();
 
 /// State of a span at one time, with the work done and the energy dissipated since the begin. Own
 /// units.
