@@ -3,7 +3,6 @@
 #include <Eigen/Core>
 #include <Eigen/Geometry>
 #include <functional>
-#include <vector>
 
 namespace dlo::energy_model {
 
@@ -52,18 +51,5 @@ struct MotionValue {
 /// seven whose first three derivatives vanish at both times, so that its jerk is continuous.
 /// @throws std::invalid_argument unless begin < end
 [[nodiscard]] std::function<MotionValue(double)> smooth_step(double begin, double end, double size);
-
-/// A row of a table of poses: time and pose of a grip.
-struct TimedPose {
-  double time = 0;                                           ///< [s]
-  Eigen::Vector3d position = Eigen::Vector3d::Zero();        ///< [m]
-  Eigen::Quaterniond turn = Eigen::Quaterniond::Identity();  ///< rotation from Grip::direction [-]
-};
-
-/// Interpolates a table of poses. Positions are on the cubic spline whose velocity is zero at both
-/// ends. Rotations follow great circles, with quintic blending that stops at each row. The times of
-/// the table have to be among MovingRod::breaks, because accelerations have kinks there.
-/// @throws std::invalid_argument unless there are two rows or more, by growing time
-[[nodiscard]] GripMotion interpolated(std::vector<TimedPose> poses);
 
 }  // namespace dlo::energy_model
