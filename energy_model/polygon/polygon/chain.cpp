@@ -14,37 +14,6 @@
 namespace dlo::energy_model {
 namespace {
 
-/// Potential of a joint and its first two derivatives by the bending angle.
-struct AngleJoint {
-  double energy, moment, stiffness;
-};
-
-AngleJoint joint_by_angle(JointLaw law, double stiffness, double L, double alpha) {
-  if (law == JointLaw::paper) {
-    const double s = std::sin(alpha / 2);
-    const double c = std::cos(alpha / 2);
-    const double quarter = std::sin(alpha / 4);
-    const double m = 2 * quarter * quarter;  // 1 - cos(alpha/2), without cancellation
-    const double scale = stiffness * L;
-    return {scale * 4 * m * m * (1 - m / 3), scale * 2 * s * s * s, scale * 3 * s * s * c};
-  }
-  const double k = stiffness / L;
-  if (law == JointLaw::linear) return {k * alpha * alpha / 2, k * alpha, k};
-  const double followed = std::clamp(alpha, -fold_angle, fold_angle);
-  const double c = std::cos(followed / 2);
-  const double quarter = std::sin(followed / 4);
-  if (law == JointLaw::binormal) {
-    const double t = std::tan(followed / 2);
-    const double moment = 2 * k * t * (1 + t * t);
-    return {2 * k * t * t + moment * (alpha - followed), moment,
-            followed == alpha ? k * (1 + t * t) * (1 + 3 * t * t) : 0};
-  }
-  const double moment = 2 * k * std::tan(followed / 2);
-  // log1p computes ln cos(alpha/2) without cancellation for small angles.
-  return {-4 * k * std::log1p(-2 * quarter * quarter) + moment * (alpha - followed), moment,
-          followed == alpha ? k / (c * c) : 0};
-}
-
 double joint_length(const ChainProblem& problem, Eigen::Index i) {
   return (problem.segment_lengths[i - 1] + problem.segment_lengths[i]) / 2;
 }

@@ -92,17 +92,9 @@ struct NaturalTurn {
 
 NaturalTurn natural_turn(const PolygonProblem& problem, Eigen::Index i) {
   const double turn = problem.natural_turns[i - 1];
-  const double L = joint_length(problem, i);
-  const double stiffness = joint_stiffness(problem, i);
-  const double s = std::sin(turn / 2);
-  NaturalTurn result;
-  const double t = std::tan(turn / 2);
-  const double angle = problem.law == JointLaw::linear     ? turn
-                       : problem.law == JointLaw::binormal ? 2 * t * (1 + t * t)
-                                                           : 2 * t;
-  result.couple = stiffness / L * angle;
-  result.constant = joint(problem.law, stiffness, L, s * s).energy - result.couple * turn;
-  return result;
+  const AngleJoint free =
+      joint_by_angle(problem.law, joint_stiffness(problem, i), joint_length(problem, i), turn);
+  return {free.moment, free.energy - free.moment * turn};
 }
 
 /// Returns the second derivative of the angle of d = length u in the plane z = 0 by d.
@@ -151,6 +143,28 @@ void for_each_look(const std::vector<bool>& held, const PointObstacle& obstacle,
 }
 
 }  // namespace
+
+AngleJoint joint_by_angle(JointLaw law, double stiffness, double L, double alpha) {
+  if (law == JointLaw::linear) {
+    const double k = stiffness / L;
+    return {k * alpha * alpha / 2, k * alpha, k};
+  }
+  const double followed =
+      law == JointLaw::paper ? alpha : std::clamp(alpha, -fold_angle, fold_angle);
+  const double s = std::sin(followed / 2);
+  const double c = std::cos(followed / 2);
+  if (law == JointLaw::paper) {
+    const double quarter = std::sin(alpha / 4);
+    const double m = 2 * quarter * quarter;  // 1 - cos(alpha/2), without cancellation
+    const double scale = stiffness * L;
+    return {scale * 4 * m * m * (1 - m / 3), scale * 2 * s * s * s, scale * 3 * s * s * c};
+  }
+  // h = s^2, so that dh / d alpha = s c
+  const Joint by_h = joint(law, stiffness, L, s * s);
+  const double moment = by_h.first * s * c;
+  const double second = by_h.second * s * s * c * c + by_h.first * (c * c - s * s) / 2;
+  return {by_h.energy + moment * (alpha - followed), moment, followed == alpha ? second : 0};
+}
 
 void add_difference_block(Eigen::Index p, Eigen::Index q, const Eigen::Matrix3d& H,
                           const AddBlock& add) {

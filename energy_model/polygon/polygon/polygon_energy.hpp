@@ -38,6 +38,14 @@ void polygon_hessian(const PolygonProblem& problem,
 /// model, and of a `binormal` joint.
 constexpr double fold_angle = 3.0;
 
+/// Potential of a joint and its first two derivatives by the bending angle.
+struct AngleJoint {
+  double energy, moment, stiffness;
+};
+
+/// Computes the potential of a joint between segments of mean length L that is bent by alpha [rad].
+[[nodiscard]] AngleJoint joint_by_angle(JointLaw law, double stiffness, double L, double alpha);
+
 /// The two segments that meet at a point of a polygon.
 struct SegmentPair {
   Eigen::Vector3d u, v;  ///< unit vectors of the segment before and the segment after the point
