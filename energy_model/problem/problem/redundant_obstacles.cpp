@@ -1,4 +1,5 @@
 #include <algorithm>
+#include <optional>
 #include <utility>
 #include <vector>
 
@@ -38,34 +39,36 @@ Eigen::Matrix<double, 3, 8> corners_in_reach(const obstacle::Body& body, double 
 
 /// Whether a convex body contains another one, which it does if it contains the balls around the
 /// corners of its core.
+/// @param reach   distance from the anchor within which the core is used, in lengths
 /// @param beyond  distance by which the other body may stick out, in lengths
-bool holds(const obstacle::Body& outer, const Eigen::Matrix<double, 3, 8>& corners, double radius,
-           double beyond = rounding) {
-  for (Eigen::Index i = 0; i < corners.cols(); ++i) {
-    if (!(outer.clearance(corners.col(i)) <= beyond - radius)) return false;
-  }
-  return true;
+bool holds(const Span::Obstacle& outer, const Span::Obstacle& inner, double reach, double beyond) {
+  const Eigen::VectorXd clearances = outer.body.clearances(corners_in_reach(inner.body, reach));
+  return clearances.maxCoeff() <= beyond - inner.body.radius();
 }
 
-}  // namespace
-
-void remove_redundant_obstacles(Span& span) {
+/// Removes the rigid obstacles that another one contains, up to a distance. Of two that contain
+/// each other the first stays.
+/// @param preferred  index in the problem of an obstacle that stays in any case
+void remove_contained(Span& span, double beyond, std::optional<std::size_t> preferred) {
+  const double reach = beyond_reach * span.length;
   std::vector<Span::Obstacle> kept;
   for (const Span::Obstacle& next : span.rigid_obstacles) {
-    const double reach = beyond_reach * span.length;
-    const Eigen::Matrix<double, 3, 8> corners = corners_in_reach(next.body, reach);
-    const bool redundant =
-        std::any_of(kept.begin(), kept.end(), [&](const Span::Obstacle& obstacle) {
-          return holds(obstacle.body, corners, next.body.radius());
-        });
-    if (redundant) continue;
+    if (std::ranges::any_of(kept, [&](const Span::Obstacle& obstacle) {
+          return holds(obstacle, next, reach, beyond);
+        })) {
+      continue;
+    }
     std::erase_if(kept, [&](const Span::Obstacle& obstacle) {
-      return holds(next.body, corners_in_reach(obstacle.body, reach), obstacle.body.radius());
+      return obstacle.index != preferred && holds(next, obstacle, reach, beyond);
     });
     kept.push_back(next);
   }
   span.rigid_obstacles = std::move(kept);
 }
+
+}  // namespace
+
+void remove_redundant_obstacles(Span& span) { remove_contained(span, rounding, std::nullopt); }
 
 bool omit_similar_obstacles(Span& span, std::size_t preferred) {
   // Distance in lengths; also the angle between similar floors [rad].
@@ -74,18 +77,9 @@ bool omit_similar_obstacles(Span& span, std::size_t preferred) {
   std::stable_partition(all.begin(), all.end(), [&](const Span::Obstacle& obstacle) {
     return obstacle.index == preferred;
   });
-  std::vector<Span::Obstacle> kept;
-  for (const Span::Obstacle& next : all) {
-    const auto corners = corners_in_reach(next.body, beyond_reach * span.length);
-    if (std::ranges::none_of(kept, [&](const Span::Obstacle& obstacle) {
-          return holds(obstacle.body, corners, next.body.radius(), similar);
-        })) {
-      kept.push_back(next);
-    }
-  }
-  const bool omitted = kept.size() < all.size();
-  all = std::move(kept);
-  return omitted;
+  const std::size_t before = all.size();
+  remove_contained(span, similar, preferred);
+  return all.size() < before;
 }
 
 }  // namespace dlo::energy_model
