@@ -267,12 +267,9 @@ void require_energy_in_space(const Problem& problem) {
 /// Checks that nothing bends or twists the rod. @throws std::invalid_argument otherwise
 void require_nothing_bends(const Problem& problem) {
   const char* where = "taut_vibrations";
-  double weight = problem.weight_per_length.norm();
-  for (const Section& section : problem.sections) {
-    weight = std::max(weight, section.weight_per_length.norm());
-  }
-  for (const LineLoad& load : problem.line_loads) {
-    weight = std::max({weight, load.at_begin.norm(), load.at_end.norm()});
+  double weight = 0;
+  for (const RodPart& part : rod_parts(problem)) {
+    weight = std::max({weight, part.weight_per_length.norm(), part.weight_slope.norm()});
   }
   require(weight == 0, where, "weight_per_length", weight,
           "0: a rod with weight is not straight under a finite uniform tension");
