@@ -2,7 +2,6 @@
 
 #include <Eigen/Core>
 #include <Eigen/SparseCore>
-#include <functional>
 #include <limits>
 
 namespace dlo::energy_model {
@@ -40,9 +39,6 @@ struct SmallestMode {
 };
 
 /// Computes the smallest eigenvalue of a pencil.
-/// @param quotient  returns the value of the second variation for a vector of norm 1; of K + C^T
-///                  D^-1 C if D does not tend to 0
-[[nodiscard]] SmallestMode smallest_mode(
-    const ConstrainedPencil& pencil, const std::function<double(const Eigen::VectorXd&)>& quotient);
+[[nodiscard]] SmallestMode smallest_mode(const ConstrainedPencil& pencil);
 
 }  // namespace dlo::energy_model

@@ -373,9 +373,7 @@ SecondVariation second_variation(const RodSpan& span, const RodMesh& mesh,
   const VariationProblem variations(span, mesh, frames, force, states);
   SecondVariation result;
   if (!variations.finite()) return result;
-  const ConstrainedPencil pencil = variations.pencil();
-  const SmallestMode mode =
-      smallest_mode(pencil, [&](const Eigen::VectorXd& x) { return x.dot(pencil.second * x); });
+  const SmallestMode mode = smallest_mode(variations.pencil());
   result.negative = mode.negative;
   result.neutral = mode.neutral;
   result.smallest = mode.smallest;
