@@ -30,10 +30,10 @@ struct FlowPiece {
 /// Force per length of the surface or of drag, and its derivatives by r, the spin, m and n.
 struct SpreadForce {
   Eigen::Vector3d value = Eigen::Vector3d::Zero();
-  Eigen::Matrix<double, 3, 12> by_state = Eigen::Matrix<double, 3, 12>::Zero();
+  Eigen::Matrix<double, 3, 12> by_state;
 };
 
-/// @param with_derivatives  false: `by_state` is not computed
+/// @param with_derivatives  false: `by_state` is not computed, and neither without such a force
 SpreadForce spread_force(const RodPiece& piece, const RodState& state, bool with_derivatives) {
   SpreadForce spread;
   if (piece.surface == nullptr) {
@@ -41,6 +41,7 @@ SpreadForce spread_force(const RodPiece& piece, const RodState& state, bool with
     const Eigen::Vector3d t = state.t();
     spread.value = piece.section.drag->force(t);
     // dt = spin x t
+    spread.by_state.setZero();
     spread.by_state.middleCols<3>(3) = -piece.section.drag->by_tangent(t) * cross_matrix(t);
     return spread;
   }
@@ -91,6 +92,7 @@ int rod_rates(double at, const double* y, double* rate, void* data) {
     spread = spread_force(piece, state, parameters > 0);
     Rate(rate + 15) -= spread.value;
   }
+  if (parameters == 0) return GSL_SUCCESS;
   const Eigen::Matrix3d yields = R * compliance.asDiagonal() * R.transpose();
   const Eigen::Index rows = flow.rows();
   for (Eigen::Index k = 0; k < parameters; ++k) {

@@ -81,10 +81,12 @@ struct ShootingSystem::Rows {
   /// Adds combinations of the twelve components of a difference of states, or of its units.
   /// @param blocks  derivatives of the difference
   void add(const Combinations& combinations, const Difference& difference,
-           std::vector<Block> blocks) {
-    if (derivatives == nullptr) blocks.clear();
-    for (Block& block : blocks) block.values = combinations * block.values;
-    add(combinations * difference, blocks);
+           const std::vector<Block>& blocks) {
+    std::vector<Block> own;
+    if (derivatives != nullptr) {
+      for (const auto& [column, values] : blocks) own.push_back({column, combinations * values});
+    }
+    add(combinations * difference, own);
   }
 };
 
@@ -191,7 +193,7 @@ void ShootingSystem::node_equations(const ShootingPoint& point, Eigen::Index i,
     by_before.push_back({force_[index], Difference::Zero()});
     by_before.back().values.bottomRows(3) = -rate_ * rate_ * gap.gradient;
   }
-  by_before.push_back({own, by_node * basis_});
+  if (rows.derivatives != nullptr) by_before.push_back({own, by_node * basis_});
   if (const RodSpan::Hold* hold = mesh_.hold[static_cast<std::size_t>(i)]) {
     rows.add(positions_.transpose() * (node.r - hold->position),
              {{own, positions_.transpose() * basis_.topRows<3>()}});
@@ -229,17 +231,21 @@ bool ShootingSystem::interval_equations(const ShootingPoint& point, Eigen::Index
   if (rows.derivatives != nullptr) change = basis_.rightCols(per_node() - shifts);
   if (!follow_rod(piece, tolerance_, end, &change)) return false;
   const Eigen::Vector3d rotation = rotation_between(next.R, end.R);
-  const Eigen::Matrix3d rate = rotation_rate(rotation);
-  std::vector<Block> by_end =
-      with_width(i, rate_of({piece.section, piece.natural, point.s[i + 1], 0, piece.surface}, end));
-  by_end.push_back({own, basis_.leftCols(shifts)});
-  by_end.push_back({own + shifts, change});
-  for (Block& block : by_end) {
-    block.values.middleRows(3, 3) = rate * block.values.middleRows(3, 3);
+  std::vector<Block> by_end;
+  std::vector<Block> blocks;
+  if (rows.derivatives != nullptr) {
+    const Eigen::Matrix3d rate = rotation_rate(rotation);
+    by_end = with_width(
+        i, rate_of({piece.section, piece.natural, point.s[i + 1], 0, piece.surface}, end));
+    by_end.push_back({own, basis_.leftCols(shifts)});
+    by_end.push_back({own + shifts, change});
+    for (Block& block : by_end) {
+      block.values.middleRows(3, 3) = rate * block.values.middleRows(3, 3);
+    }
+    blocks = by_end;
+    blocks.push_back({own + per_node(), -basis_});
+    blocks.back().values.middleRows(3, 3) = -rate.transpose() * basis_.middleRows<3>(3);
   }
-  std::vector<Block> blocks = by_end;
-  blocks.push_back({own + per_node(), -basis_});
-  blocks.back().values.middleRows(3, 3) = -rate.transpose() * basis_.middleRows<3>(3);
   Difference difference = Difference::Zero();
   difference.head<6>() << end.r - next.r, rotation;
   rows.add(basis_.leftCols(positions_.cols() + turns_.cols()).transpose(), difference, blocks);
