@@ -166,11 +166,8 @@ std::vector<RodState> states_at(const SpanEquilibrium& equilibrium, const RodSpa
 
 void carry_frames(const RodSpan& span, const RodMesh& mesh, double tolerance,
                   std::vector<RodState>& states) {
-  const std::size_t first =
-      span.clamps.empty() ? 0
-                          : static_cast<std::size_t>(std::lower_bound(mesh.s.begin(), mesh.s.end(),
-                                                                      span.clamps.front().at) -
-                                                     mesh.s.begin());
+  const auto first =
+      static_cast<std::size_t>(span.clamps.empty() ? 0 : node_at(mesh.s, span.clamps.front().at));
   RodState& held = states[first];
   held.R = span.clamps.empty() ? frame_along(held.t(), held.t().unitOrthogonal())
                                : transported(span.first_frame, held.t());

@@ -57,18 +57,21 @@ struct SpanSearchResult {
 
 /// Returns the equilibrium to which Newton's method converges from a shape of the span's problem,
 /// or of a similar one. If the shape has no `twists` for a round span, the span is refined without
-/// twist and then twisted. Material directors are those of the shape's d1. If it has none, they
-/// rotate from those of the first clamp by the torque that the grips' reactions imply.
+/// twist and then twisted. Material directors are those of the shape's d1.
 /// @throws std::invalid_argument if the span is not round and has no clamp, or if its loads are too
 /// large (check_load())
 [[nodiscard]] SpanEquilibrium refine_span(const RodSpan& span, const Problem& problem,
                                           const Equilibrium& shape, double tolerance,
                                           const Deadline& deadline);
 
-/// Returns the force of the part beyond the arc length s (over l) on the part before, just after s,
-/// that the grips' forces of a shape imply, in EI/l^2.
-[[nodiscard]] Eigen::Vector3d implied_force(const Problem& problem, const Equilibrium& shape,
-                                            double s);
+/// Returns the cross-sections of a shape just after the nodes of a mesh, as an initial guess.
+/// Moments are computed from its curvature, its `twists` and the rotation of its d1. Frames that a
+/// shape with material directors has no d1 for are integrated from that of the first clamp.
+/// @param behind  distance behind a node, where the curvature may jump, at which the shape is
+///                sampled [l]
+[[nodiscard]] std::vector<RodState> states_of(const RodSpan& span, const RodMesh& mesh,
+                                              const Problem& problem, const Equilibrium& shape,
+                                              double behind, double tolerance);
 
 /// Returns the length of intervals that resolves the bends by a force over b and by the natural
 /// strains.
