@@ -21,10 +21,9 @@ struct SpanSearchResult {
 /// Finds equilibria by Newton's method from the minima of polygons (relaxed_polygon.hpp), in the
 /// span's plane and out of it: from the six lowest ones, and from ten more while none of the
 /// results is stable. If a polygon's force is large for its mesh, or Newton's method does not
-/// converge, the polygon is relaxed again on a finer mesh. An unstable equilibrium below all stable
-/// ones is left in both directions along the mode of its smallest eigenvalue, and the polygon is
-/// relaxed from there. If nothing is stable then, the gradient flow starts from the lowest
-/// equilibrium. If nothing is found, a failed result is returned.
+/// converge, the polygon is relaxed again on a finer mesh. From an unstable equilibrium below all
+/// stable ones, the gradient flow of the energy leads to a stable one. If nothing is found, a
+/// failed result is returned.
 ///
 /// Frames after the first clamp are released for this search. If clamps hold frames, those of the
 /// lowest equilibrium are then rotated to the held ones (twist_span()); the result is then one
