@@ -75,8 +75,7 @@ std::vector<BalancedRod> balanced_rods() {
   couple.loads = {{0.7, {0, 0, 0}, {0, 0, 2}}, {0, {1, 1, 0}, {0, 0, 3}}};
   add("couples", couple, false);
   add("couples by shooting", couple, true);
-  Problem lying = heavy_cantilever(30, 0);
-  lying.obstacles = {{Body::half_space({0, -0.1, 0}, {0, 1, 0})}};
+  const Problem lying = test::over_floor(30, 0.1);
   add("a rod that lies", lying, false);
   add("a rod that lies by shooting", lying, true);
   Problem peg = heavy_cantilever(20, 0);

@@ -5,28 +5,24 @@
 #include <Eigen/LU>
 #include <array>
 #include <cmath>
-#include <span>
 #include <string>
 #include <vector>
 
 #include "contact/clearance.hpp"
+#include "contact_samples.hpp"
 #include "dlo/energy_model/energy.hpp"
 #include "problems.hpp"
 #include "random_contact.hpp"
 #include "runge_kutta.hpp"
 #include "solved.hpp"
+#include "start_along.hpp"
 
 namespace dlo::energy_model {
 namespace {
 
 using test::heavy_cantilever;
+using test::over_floor;
 using test::random_touching_problem;
-
-Problem over_floor(double gamma, double height) {
-  Problem problem = heavy_cantilever(gamma, 0);
-  problem.obstacles = {{obstacle::Body::half_space({0, -height, 0}, {0, 1, 0})}};
-  return problem;
-}
 
 /// A rod held above a floor, worked out from its shear force alone. Where it lies it is straight
 /// and its weight is carried on the spot; up to the touch-down at s = b it hangs free:
@@ -100,7 +96,9 @@ TEST(Contact, LyingRodIsThatOfTheElastica) {
       if (!(exact.residual < 1e-10) || exact.b > 1) continue;  // its tip touches
       SCOPED_TRACE("Gamma " + std::to_string(gamma) + ", height " + std::to_string(height));
       ++looked;
-      const Equilibrium result = test::converged(solve_energy(over_floor(gamma, height)));
+      const Problem problem = over_floor(gamma, height);
+      const Equilibrium result = test::converged(solve_energy(problem));
+      test::expect_only_pushed(problem, result);
       ASSERT_EQ(result.contacts.size(), 1);
       const ContactPart& contact = result.contacts[0];
       EXPECT_EQ(contact.kind, ContactKind::lying);
@@ -237,18 +235,7 @@ Equilibrium judged_below_a_floor(double length, double depth) {
   Problem problem = heavy_cantilever(1, 0);
   problem.length = length;
   problem.obstacles = {{obstacle::Body::half_space({0, depth * length, 0}, {0, 1, 0})}};
-  Equilibrium shape;
-  shape.status = SolveStatus::converged;
-  shape.sample = [](std::span<const double> arc_lengths) {
-    Samples samples;
-    samples.arc_length.assign(arc_lengths.begin(), arc_lengths.end());
-    const auto count = static_cast<Eigen::Index>(arc_lengths.size());
-    samples.points.setZero(3, count);
-    samples.points.row(0) = Eigen::Map<const Eigen::RowVectorXd>(arc_lengths.data(), count);
-    samples.tangents = Eigen::Vector3d::UnitX().replicate(1, count);
-    samples.curvature.setZero(3, count);
-    return samples;
-  };
+  Equilibrium shape = test::start_along({{0, 0, 0}, {1, 0, 0}});
   judge_penetration(problem, shape);
   return shape;
 }

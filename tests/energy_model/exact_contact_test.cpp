@@ -13,6 +13,7 @@
 
 #include "../sanitized.hpp"
 #include "../says.hpp"
+#include "contact_samples.hpp"
 #include "dlo/energy_model/energy.hpp"
 #include "dlo/energy_model/exact.hpp"
 #include "problems.hpp"
@@ -24,12 +25,7 @@ namespace dlo::energy_model {
 namespace {
 
 using test::heavy_cantilever;
-
-Problem over_level_floor(double gamma, double height) {
-  Problem problem = heavy_cantilever(gamma, 0);
-  problem.obstacles = {{obstacle::Body::half_space({0, -height, 0}, {0, 1, 0})}};
-  return problem;
-}
+using test::over_floor;
 
 /// Numbers of shapes with contact that were confirmed from themselves, by kind.
 struct Confirmed {
@@ -53,6 +49,7 @@ struct Confirmed {
     refused += succeeded(energy.status) ? 0 : 1;
     if (!succeeded(energy.status) || energy.contacts.empty()) return;
     ++touching;
+    test::expect_only_pushed(problem, energy);
     const Equilibrium exact = solve_exact(problem, {.start = &energy});
     ASSERT_TRUE(succeeded(exact.status) ||
                 (may_be_near_singular && exact.status == SolveStatus::near_singular))
@@ -95,7 +92,7 @@ TEST(ExactContact, ConfirmsRodsThatTouchAFloorOrLieOnIt) {
       // A soft rod that hangs down steeply rotates about the vertical almost without a change of
       // energy.
       seen.may_be_near_singular = gamma >= 1e4 && height == 0.3;
-      seen.confirm(over_level_floor(gamma, height));
+      seen.confirm(over_floor(gamma, height));
     }
   }
   EXPECT_EQ(seen.refused, 0);
@@ -109,7 +106,7 @@ TEST(ExactContact, ConfirmsARodThatALoadTakesOutOfThePlane) {
   Confirmed seen;
   for (const double side : {0.5, 2.0, 8.0}) {
     SCOPED_TRACE("side load " + std::to_string(side));
-    Problem problem = over_level_floor(20, 0.15);
+    Problem problem = over_floor(20, 0.15);
     problem.grips[0].direction = Eigen::Vector3d(1, -0.1, 0.2).normalized();
     problem.loads = {{0.6, {0, 0, side}}};
     problem.obstacles.push_back({obstacle::Body::half_space({0, 0, 2}, {0, 0, -1})});
@@ -157,11 +154,9 @@ TEST(ExactContact, ConfirmsTautRodsAroundAPeg) {
   constexpr double radius = 0.05;
   for (const double aside : {0.0, 0.02}) {
     SCOPED_TRACE("aside " + std::to_string(aside));
-    Problem problem = heavy_cantilever(10, 0);
-    problem.loads = {{1, 3e3 * Eigen::Vector3d(0, -1, aside).normalized()}};
-    problem.obstacles = {{obstacle::Body::cylinder({0.4, -radius, 0}, {0, 0, 1}, radius)}};
-    const Equilibrium start =
-        test::start_along({{0, 0, 0}, {0.4 + radius, 0, 0}, {0.4 + radius, radius - 0.6, 0}});
+    Problem problem = test::drawn_over_peg(radius, 3e3, aside);
+    problem.weight_per_length = {0, -10, 0};
+    const Equilibrium start = test::start_over_peg(radius);
     seen.confirm(problem, &start);
   }
   EXPECT_EQ(seen.lying, 2);
@@ -196,7 +191,7 @@ TEST(ExactContact, ConfirmsStripsAndSections) {
   for (const double roll : {0.0, 0.4, 1.2}) {
     for (const bool peg : {false, true}) {
       SCOPED_TRACE("roll " + std::to_string(roll) + (peg ? ", peg" : ", floor"));
-      Problem strip = over_level_floor(peg ? 3 : 20, 0.12);
+      Problem strip = over_floor(peg ? 3 : 20, 0.12);
       strip.bending_stiffness_2 = 0.3;
       strip.torsional_stiffness = 0.5;
       strip.grips[0].frame = FrameHold{.d1 = Eigen::Vector3d::UnitZ(), .roll = roll};
@@ -208,7 +203,7 @@ TEST(ExactContact, ConfirmsStripsAndSections) {
   }
   for (const double stiffer : {0.3, 3.0}) {
     SCOPED_TRACE("stiffer " + std::to_string(stiffer));
-    Problem rod = over_level_floor(30, 0.1);
+    Problem rod = over_floor(30, 0.1);
     rod.sections = {{.begin = 0.1, .end = 0.3, .bending_stiffness = stiffer}};
     rod.sections[0].weight_per_length = {0, -60, 0};
     seen.confirm(rod);
@@ -302,7 +297,7 @@ TEST(ExactContact, NoObstacleIsConfirmedToPull) {
 }
 
 TEST(ExactContact, ToleranceIsThatOfTheIntegratorWhereTheRodTouchesToo) {
-  const Problem problem = over_level_floor(30, 0.1);
+  const Problem problem = over_floor(30, 0.1);
   const std::vector<double> at = equal_arc_lengths(problem.length, 33);
   const Equilibrium energy = solve_energy(problem);
   const Eigen::Matrix3Xd fine = solve_exact(problem, {.start = &energy}).sample(at).points;
@@ -314,15 +309,15 @@ TEST(ExactContact, ToleranceIsThatOfTheIntegratorWhereTheRodTouchesToo) {
 }
 
 TEST(ExactContact, EndsWithItsTimeLimit) {
-  const Problem problem = over_level_floor(1e5, 0.03);
+  const Problem problem = over_floor(1e5, 0.03);
   const Equilibrium energy = solve_energy(problem);
   const Equilibrium exact = solve_exact(problem, {.time_limit = 1e-9, .start = &energy});
   EXPECT_EQ(exact.status, SolveStatus::time_limit) << exact.message;
 }
 
 TEST(ExactContact, DetectsNoContactWithoutAStart) {
-  const std::string error = dlo::test::error_of<std::invalid_argument>(
-      [] { return solve_exact(over_level_floor(10, 0.1)); });
+  const std::string error =
+      dlo::test::error_of<std::invalid_argument>([] { return solve_exact(over_floor(10, 0.1)); });
   EXPECT_TRUE(dlo::test::says(error, {"number of obstacles", "a start with its contacts"}));
 }
 

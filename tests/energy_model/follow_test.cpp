@@ -90,14 +90,6 @@ TEST(Keep, UndoRestoresTheShapeBefore) {
   EXPECT_LT(apart(*again, *near), 1e-9);
 }
 
-/// A weightless rod that is drawn down over a peg.
-Problem drawn_over_peg(double radius, double tension) {
-  Problem problem = heavy_cantilever(0, 0);
-  problem.loads = {{1, {0, -tension, 0}}};
-  problem.obstacles = {{obstacle::Body::cylinder({0.4, -radius, 0}, {0, 0, 1}, radius)}};
-  return problem;
-}
-
 /// The least clearance of the peg within a thousandth of the length of where the rod touches it.
 double clearance_beside(const Equilibrium& rod, const ContactPart& contact,
                         const obstacle::Body& peg) {
@@ -114,14 +106,14 @@ TEST(Keep, FollowsAPointUntilItLiesAndBack) {
   constexpr double radius = 0.03;
   // It begins to lie at about this tension.
   const double about = 1.6 / (radius * radius);
-  const Equilibrium start =
-      test::start_along({{0, 0, 0}, {0.4 + radius, 0, 0}, {0.4 + radius, radius - 0.6, 0}});
+  const Equilibrium start = test::start_over_peg(radius);
   EnergySolver solver({.start = &start});
-  const Equilibrium first = test::converged(solver.solve(drawn_over_peg(radius, 0.6 * about)));
+  const Equilibrium first =
+      test::converged(solver.solve(test::drawn_over_peg(radius, 0.6 * about)));
   ASSERT_EQ(first.contacts.size(), 1U);
   ASSERT_EQ(first.contacts[0].kind, ContactKind::touching);
   const auto kind_at = [&](double tension) {
-    const Problem problem = drawn_over_peg(radius, tension);
+    const Problem problem = test::drawn_over_peg(radius, tension);
     const std::optional<Equilibrium> rod = solver.try_follow(problem);
     EXPECT_TRUE(rod) << tension;
     if (!rod) return ContactKind::tip;
@@ -143,7 +135,7 @@ TEST(Keep, FollowsAPointUntilItLiesAndBack) {
   }
   // Both sides leave the peg at the same point there: at an angle phi each from the line of their
   // tension, sin(phi / 2) = (EI / T)^(1/2) / 2R.
-  const std::optional<Equilibrium> there = solver.try_follow(drawn_over_peg(radius, touches));
+  const std::optional<Equilibrium> there = solver.try_follow(test::drawn_over_peg(radius, touches));
   ASSERT_TRUE(there);
   const Eigen::Vector3d held = there->grips[0].force.normalized();
   const double phi = std::acos(held.y()) / 2;

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "contact/clearance.hpp"
+#include "contact_samples.hpp"
 #include "dlo/energy_model/energy.hpp"
 #include "problems.hpp"
 #include "rolled_clamps.hpp"
@@ -31,13 +32,11 @@ TEST(Peg, TautRodLeavesItWhereItsCurvatureIsThePegs) {
   for (const double radius : {0.03, 0.05, 0.1}) {
     for (const double tension : {3e3, 1e4}) {
       SCOPED_TRACE("radius " + std::to_string(radius) + ", tension " + std::to_string(tension));
-      Problem problem = heavy_cantilever(0, 0);
-      problem.loads = {{1, {0, -tension, 0}}};
-      problem.obstacles = {{Body::cylinder({0.4, -radius, 0}, {0, 0, 1}, radius)}};
+      const Problem problem = test::drawn_over_peg(radius, tension);
       // On this side of the peg it would hang from the clamp alone.
-      const Equilibrium start =
-          test::start_along({{0, 0, 0}, {0.4 + radius, 0, 0}, {0.4 + radius, radius - 0.6, 0}});
+      const Equilibrium start = test::start_over_peg(radius);
       const Equilibrium rod = test::converged(solve_energy(problem, {.start = &start}));
+      test::expect_only_pushed(problem, rod);
       ASSERT_EQ(rod.contacts.size(), 1);
       const ContactPart& contact = rod.contacts[0];
       ASSERT_EQ(contact.kind, ContactKind::lying);
@@ -69,6 +68,7 @@ TEST(Table, OverhangLiftsTheRodBehindTheEdge) {
     const Eigen::Vector3d centre(1 - overhang - size.x() / 2, -size.y() / 2, 0);
     problem.obstacles = {{Body::box(centre, Eigen::Matrix3d::Identity(), size, radius)}};
     const Equilibrium rod = test::converged(solve_energy(problem));
+    test::expect_only_pushed(problem, rod);
     ASSERT_EQ(rod.contacts.size(), 2);
     // The table carries the part of the rod that lies on it. The clamp there only prevents sliding
     // off the edge, where the contact force is perpendicular to the rod.
@@ -103,6 +103,7 @@ TEST(Peg, RopeHasTheTensionOfTheFrictionlessCapstan) {
   problem.obstacles = {{Body::cylinder({0, 0, 0}, {0, 0, 1}, 0.05)}};
   const Equilibrium start = test::start_along({{-0.33, -0.28, 0}, {0, 0.06, 0}, {0.38, -0.29, 0}});
   const Equilibrium rod = test::converged(solve_energy(problem, {.start = &start}));
+  test::expect_only_pushed(problem, rod);
   ASSERT_EQ(rod.contacts.size(), 1);
   EXPECT_EQ(rod.contacts[0].kind, ContactKind::lying);
   const Samples ends = rod.sample(std::array{0.0, 1.0});

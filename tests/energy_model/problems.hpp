@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <cmath>
 #include <fstream>
 #include <nlohmann/json.hpp>
@@ -7,9 +8,17 @@
 #include <stdexcept>
 #include <string>
 
+#include "dlo/energy_model/energy.hpp"
+#include "dlo/energy_model/exact.hpp"
 #include "dlo/energy_model/problem.hpp"
 
 namespace dlo::test {
+
+/// Both solvers with their default options.
+inline constexpr std::array<energy_model::Equilibrium (*)(const energy_model::Problem&), 2>
+    solvers = {
+        [](const energy_model::Problem& problem) { return energy_model::solve_energy(problem); },
+        [](const energy_model::Problem& problem) { return energy_model::solve_exact(problem); }};
 
 /// Gamma = w l^3 / (EI) at which an upright clamped rod buckles under its own weight: z^3 with z
 /// the first root of sqrt(3) Ai(-z) + Bi(-z). The digits are those of reference_values.json.
@@ -27,6 +36,13 @@ inline energy_model::Problem heavy_cantilever(double gamma, double degrees) {
   // Exactly upright and exactly hanging, which the cosine of a rounded pi/2 is not.
   if (std::abs(degrees) == 90) direction.x() = 0;
   problem.grips = {{.at = 0, .position = Eigen::Vector3d::Zero(), .direction = direction}};
+  return problem;
+}
+
+/// Returns heavy_cantilever(gamma, 0) over a level floor so far below its clamp.
+inline energy_model::Problem over_floor(double gamma, double height) {
+  energy_model::Problem problem = heavy_cantilever(gamma, 0);
+  problem.obstacles = {{obstacle::Body::half_space({0, -height, 0}, {0, 1, 0})}};
   return problem;
 }
 

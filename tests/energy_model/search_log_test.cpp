@@ -117,8 +117,7 @@ TEST(SearchLog, AccountsForEveryEquilibriumOfOneSpan) {
 }
 
 TEST(SearchLog, ReportsWhatAFloorOmitsAndCountsShapesThatLieOnIt) {
-  Problem problem = heavy_cantilever(50, 0);
-  problem.obstacles = {{obstacle::Body::half_space({0, -0.1, 0}, {0, 1, 0})}};
+  const Problem problem = test::over_floor(50, 0.1);
   expect_accounted(problem);
   EXPECT_NE(left_out(search_energy(problem)).find("polygons"), std::string::npos);
 }

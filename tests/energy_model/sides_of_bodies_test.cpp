@@ -14,6 +14,7 @@
 #include <string>
 #include <vector>
 
+#include "contact_samples.hpp"
 #include "dlo/energy_model/energy.hpp"
 #include "dlo/energy_model/exact.hpp"
 #include "problems.hpp"
@@ -38,6 +39,7 @@ Equilibrium near_line(const Problem& problem, const Corners& corners) {
 
 /// Returns the solution of `exact` from an equilibrium with its contacts.
 Equilibrium confirmed(const Problem& problem, const Equilibrium& rod) {
+  test::expect_only_pushed(problem, rod);
   return test::converged(solve_exact(problem, {.start = &rod}));
 }
 

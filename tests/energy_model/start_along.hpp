@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "dlo/energy_model/equilibrium.hpp"
+#include "problems.hpp"
 
 namespace dlo::test {
 
@@ -35,6 +36,20 @@ inline energy_model::Equilibrium start_along(const std::vector<Eigen::Vector3d>&
     return samples;
   };
   return shape;
+}
+
+/// Returns a weightless rod whose end is drawn down beyond a peg below it.
+/// @param aside  part of the load along the peg's axis, over that along -y
+inline energy_model::Problem drawn_over_peg(double radius, double tension, double aside = 0) {
+  energy_model::Problem problem = heavy_cantilever(0, 0);
+  problem.loads = {{1, tension * Eigen::Vector3d(0, -1, aside).normalized()}};
+  problem.obstacles = {{obstacle::Body::cylinder({0.4, -radius, 0}, {0, 0, 1}, radius)}};
+  return problem;
+}
+
+/// Returns an initial guess for drawn_over_peg() that passes over the peg.
+inline energy_model::Equilibrium start_over_peg(double radius) {
+  return start_along({{0, 0, 0}, {0.4 + radius, 0, 0}, {0.4 + radius, radius - 0.6, 0}});
 }
 
 }  // namespace dlo::test

@@ -10,6 +10,7 @@
 #include <string>
 #include <vector>
 
+#include "contact_samples.hpp"
 #include "dlo/energy_model/energy.hpp"
 #include "dlo/energy_model/polygon.hpp"
 #include "equilibrium_balance.hpp"
@@ -37,6 +38,7 @@ Equilibrium solved_touching(const Problem& problem) {
   Equilibrium result = test::usable(solve_energy(problem));
   EXPECT_FALSE(result.contacts.empty());
   EXPECT_LE(result.penetration, allowed_penetration * problem.length);
+  test::expect_only_pushed(problem, result);
   return result;
 }
 
