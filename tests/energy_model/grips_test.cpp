@@ -271,8 +271,7 @@ TEST(Pin, CarriesTheLoadThatActsOnIt) {
   const Eigen::Vector3d load(1, -2, 0.5);
   Problem loaded = problem;
   loaded.loads = {{0.6, load}};
-  for (const auto& solve : {+[](const Problem& p) { return solve_energy(p); },
-                            +[](const Problem& p) { return solve_exact(p); }}) {
+  for (const auto solve : test::solvers) {
     const Equilibrium without = test::converged(solve(problem));
     const Equilibrium with = test::converged(solve(loaded));
     EXPECT_LT((with.grips[1].force + load - without.grips[1].force).norm(), 1e-6);

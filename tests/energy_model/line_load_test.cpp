@@ -48,8 +48,7 @@ TEST(LineLoad, OnAllOfTheRodIsAWeight) {
   tilted.loads = {{0.5, {1, 2, 3}}};
   for (const Problem& heavy : {heavy_cantilever(20, 30), two_clamps(10, 0.8), tilted}) {
     const Problem loaded = with_weight_as_load(heavy);
-    for (const auto& solve : {+[](const Problem& p) { return solve_energy(p); },
-                              +[](const Problem& p) { return solve_exact(p); }}) {
+    for (const auto solve : test::solvers) {
       const Equilibrium one = solve(heavy);
       const Equilibrium other = test::converged(solve(loaded));
       EXPECT_EQ(test::gap_between(one, other), 0);
@@ -68,8 +67,7 @@ TEST(LineLoad, TendsToBeamTheoryWithTheSquareOfTheLoad) {
     return (-std::pow(s, 5) / 5 + (3 + a) * std::pow(s, 4) / 4 - a * std::pow(s, 3)) / 6;
   };
   const double beam = (moment(b) - moment(a)) / (b - a);
-  for (const auto& solve : {+[](const Problem& p) { return solve_energy(p); },
-                            +[](const Problem& p) { return solve_exact(p); }}) {
+  for (const auto solve : test::solvers) {
     double before = 0;
     for (const double q : {0.4, 0.2, 0.1}) {
       Problem problem = heavy_cantilever(0, 0);
@@ -136,8 +134,7 @@ TEST(LineLoad, ARodSeenFromItsOtherEndIsTheSame) {
   reversed.line_loads = {{0.4, 0.9, {-3, 4, 0}, {1, 2, 0}}};
   const std::vector<double> s = {0, 0.3, 1};
   const std::vector<double> back = {1, 0.7, 0};
-  for (const auto& solve : {+[](const Problem& p) { return solve_energy(p); },
-                            +[](const Problem& p) { return solve_exact(p); }}) {
+  for (const auto solve : test::solvers) {
     const Equilibrium one = solve(problem);
     const Equilibrium other = test::converged(solve(reversed));
     EXPECT_LT((one.sample(s).points - other.sample(back).points).norm(), 1e-10);

@@ -5,7 +5,6 @@
 
 #include <Eigen/Geometry>
 #include <cmath>
-#include <functional>
 #include <numbers>
 #include <stdexcept>
 #include <string>
@@ -14,6 +13,7 @@
 #include "../says.hpp"
 #include "dlo/energy_model/energy.hpp"
 #include "dlo/energy_model/exact.hpp"
+#include "problems.hpp"
 #include "random_problems.hpp"
 #include "solved.hpp"
 
@@ -23,10 +23,7 @@ namespace {
 using Eigen::Vector3d;
 using std::numbers::pi;
 
-using Solver = std::function<Equilibrium(const Problem&)>;
-
-Equilibrium energy(const Problem& problem) { return solve_energy(problem); }
-Equilibrium exact(const Problem& problem) { return solve_exact(problem); }
+using Solver = Equilibrium (*)(const Problem&);
 
 /// Test of both models, by name.
 class BothModels : public testing::TestWithParam<std::pair<const char*, Solver>> {
@@ -37,8 +34,8 @@ class BothModels : public testing::TestWithParam<std::pair<const char*, Solver>>
 };
 
 INSTANTIATE_TEST_SUITE_P(Strip, BothModels,
-                         testing::Values(std::pair("energy", Solver(energy)),
-                                         std::pair("exact", Solver(exact))),
+                         testing::Values(std::pair("energy", test::solvers[0]),
+                                         std::pair("exact", test::solvers[1])),
                          [](const auto& model) { return std::string(model.param.first); });
 
 /// Returns a strip of unit length, clamped along x at the origin; in the x-y plane it bends about
