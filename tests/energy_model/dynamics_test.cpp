@@ -22,6 +22,7 @@ namespace {
 
 using Eigen::Vector3d;
 using std::numbers::pi;
+using test::equal_times;
 
 constexpr double first_beta = 1.8751040687119612;
 /// Period of a cantilever with EI = l = rho A = 1.
@@ -40,12 +41,6 @@ MovingRod closed_rod(double gamma) {
   rod.problem = test::two_clamps(gamma, 0.8);
   rod.inertia.mass_per_length = 1;
   return rod;
-}
-
-std::vector<double> equal_times(int count, double step) {
-  std::vector<double> times;
-  for (int i = 1; i <= count; ++i) times.push_back(step * i);
-  return times;
 }
 
 Vector3d tip(const MovingFrame& frame) {
@@ -128,14 +123,10 @@ TEST(Dynamics, ReleasedCantileverMovesAsAPolygonAndAsWithMoreTermsAndSmallerStep
                               {.terms = 18, .tolerance = 7e-8});
     EXPECT_LT(rod.energy_error, 1e-9);
     EXPECT_GT(fine.steps, rod.steps);
-    const Eigen::Matrix2Xd coarse = test::RigidPolygon(40, gamma).tips(times);
-    const Eigen::Matrix2Xd finer = test::RigidPolygon(80, gamma).tips(times);
-    const double ratio = std::pow(80.5 / 40.5, 2);
+    const Eigen::Matrix2Xd limit = test::limit_of_tips(40, gamma, {}, times);
     for (std::size_t k = 0; k < times.size(); ++k) {
-      const auto column = static_cast<Eigen::Index>(k);
-      const Eigen::Vector2d limit =
-          finer.col(column) + (finer.col(column) - coarse.col(column)) / (ratio - 1);
-      EXPECT_LT((tip(rod.frames[k]).head<2>() - limit).norm(), allowed) << gamma << " " << k;
+      const Eigen::Vector2d expected = limit.col(static_cast<Eigen::Index>(k));
+      EXPECT_LT((tip(rod.frames[k]).head<2>() - expected).norm(), allowed) << gamma << " " << k;
       EXPECT_LT((tip(rod.frames[k]) - tip(fine.frames[k])).norm(), 1e-5) << gamma << " " << k;
     }
   }
@@ -283,18 +274,22 @@ TEST(Dynamics, DampedReactionsConvergeToThoseOfTheEquilibrium) {
   }
 }
 
+GripMotion evenly(const Vector3d& velocity) {
+  return [velocity](double time) {
+    GripPose pose;
+    pose.position = time * velocity;
+    pose.velocity = velocity;
+    return pose;
+  };
+}
+
 TEST(Dynamics, AFrameThatMovesEvenlyChangesNothing) {
   const std::vector<double> times = equal_times(2, 0.1);
   MovingRod rod = moving_cantilever(5);
   const StartingShape start = straight_rod(Vector3d::UnitX());
   const Dynamics stands = run(rod, start, times);
   const Vector3d velocity(3, -2, 1);
-  rod.motions = {[velocity](double time) {
-    GripPose pose;
-    pose.position = time * velocity;
-    pose.velocity = velocity;
-    return pose;
-  }};
+  rod.motions = {evenly(velocity)};
   // The whole rod has the velocity at the begin.
   const Dynamics moves = run(rod, start, times);
   for (std::size_t k = 0; k < times.size(); ++k) {
@@ -312,12 +307,7 @@ TEST(Dynamics, SquaredDragIsAcrossTheRod) {
   rod.material_damping = 0.3;
   rod.quadratic_drag = 0.1;
   const Vector3d velocity(1, 0, 0.3);
-  rod.motions = {[velocity](double time) {
-    GripPose pose;
-    pose.position = time * velocity;
-    pose.velocity = velocity;
-    return pose;
-  }};
+  rod.motions = {evenly(velocity)};
   const Dynamics result = run(rod, straight_rod(Vector3d::UnitX()), {20});
   EXPECT_LT(result.energy_error, 1e-7);
   const Vector3d force = result.frames[0].grips[0].force;
@@ -333,9 +323,9 @@ TEST(Dynamics, SquaredDragIsAcrossTheRod) {
 TEST(Dynamics, InMotionItFollowsItsShapesAtRestFromTheBegin) {
   MovingRod rod = closed_rod(5);
   constexpr double speed = 0.005;
-  const auto evenly = [](double time) { return MotionValue{speed * time, speed, 0}; };
-  rod.motions = {nullptr, moving(rod.problem.grips[1].position, -Vector3d::UnitX(), evenly,
-                                 Vector3d(0, 0.6, 0.8), evenly)};
+  const auto at = [](double time) { return MotionValue{speed * time, speed, 0}; };
+  rod.motions = {nullptr, moving(rod.problem.grips[1].position, -Vector3d::UnitX(), at,
+                                 Vector3d(0, 0.6, 0.8), at)};
   constexpr int terms = 12;
   const StartingShape start = solve_energy(rod.problem, {.terms = terms}).sample;
   const std::vector<double> times = equal_times(10, 0.05);

@@ -23,6 +23,7 @@ namespace dlo::energy_model {
 namespace {
 
 using Eigen::Vector3d;
+using test::equal_times;
 
 const obstacle::Body low_floor = obstacle::Body::half_space({0, -0.2, 0}, {0, 1, 0});
 
@@ -35,18 +36,8 @@ MovingRod cantilever_over(double gamma, const obstacle::Body& body) {
   return rod;
 }
 
-std::vector<double> every(double step, int count) {
-  std::vector<double> times;
-  for (int i = 1; i <= count; ++i) times.push_back(step * i);
-  return times;
-}
-
-/// Returns arc lengths that are much closer than the points at which contact is checked.
-std::vector<double> dense() {
-  std::vector<double> result;
-  for (int i = 0; i <= 4000; ++i) result.push_back(i / 4000.0);
-  return result;
-}
+/// Arc lengths that are much closer than the points at which contact is checked.
+const std::vector<double> dense = equal_arc_lengths(1, 4001);
 
 /// Checks what all motions satisfy: no penetration beyond `depth`, losses that grow, the energy
 /// balance and, for a half-space, contact forces that only push.
@@ -60,7 +51,7 @@ void expect_contact(const MovingRod& rod, const Dynamics& result, double depth, 
     if (!rod.obstacle_motions.empty()) {
       moved = rod.obstacle_motions[0](frame.time).position - rod.obstacle_motions[0](0).position;
     }
-    const Eigen::Matrix3Xd points = frame.sample(dense()).points.colwise() - moved;
+    const Eigen::Matrix3Xd points = frame.sample(dense).points.colwise() - moved;
     EXPECT_GE(rod.problem.obstacles[0].body.clearances(points).minCoeff(), -depth) << frame.time;
     EXPECT_GE(frame.energy.lost, lost - 1e-12) << frame.time;
     lost = frame.energy.lost;
@@ -82,7 +73,7 @@ Dynamics fall(const MovingRod& rod, const std::vector<double>& times, double dep
 TEST(RigidContactDynamics, ACantileverFallsOnAFloorAsAPolygon) {
   constexpr double gamma = 10;
   constexpr double depth = 1e-4;
-  const std::vector<double> times = every(0.1, 6);
+  const std::vector<double> times = equal_times(6, 0.1);
   const MovingRod rod = cantilever_over(gamma, low_floor);
   const Dynamics result = fall(rod, times, depth, 14);
   expect_contact(rod, result, depth, 1e-5);
@@ -127,7 +118,7 @@ TEST(RigidContactDynamics, DampedItComesToRestAsInEquilibrium) {
       const MovingFrame& last = result.frames.back();
       EXPECT_LT(last.energy.kinetic, 1e-8);
       const double apart =
-          (last.sample(dense()).points - rest.sample(dense()).points).colwise().norm().maxCoeff();
+          (last.sample(dense).points - rest.sample(dense).points).colwise().norm().maxCoeff();
       EXPECT_LT(apart, depth / 2);
       // A force at 0.5 whose place is known to the depth is known to 3 depth / 0.5 of itself.
       const double allowed = 6 * depth * gamma;
@@ -144,7 +135,7 @@ TEST(RigidContactDynamics, DampedItComesToRestAsInEquilibrium) {
 TEST(RigidContactDynamics, ARodOnAPinFallsOnAFloorAndKeepsItsBalance) {
   MovingRod rod = cantilever_over(20, low_floor);
   rod.problem.grips[0].direction.reset();
-  const Dynamics result = fall(rod, every(0.05, 16), 1e-3);
+  const Dynamics result = fall(rod, equal_times(16, 0.05), 1e-3);
   expect_contact(rod, result, 1e-3, 1e-5);
   EXPECT_GT(result.frames.back().obstacles[0].y(), 1);
   EXPECT_LT(result.frames.back().grips[0].torque.norm(), 1e-8);
@@ -157,7 +148,7 @@ TEST(RigidContactDynamics, NoPegAndNoEdgeComesBetweenThePointsOfContact) {
       obstacle::Body::box({0.6, -0.5, 0}, Eigen::Matrix3d::Identity(), {0.1, 0.8, 1}, 0.002)};
   for (const obstacle::Body& body : bodies) {
     const MovingRod rod = cantilever_over(10, body);
-    const Dynamics result = fall(rod, every(0.1, 4), 1e-3);
+    const Dynamics result = fall(rod, equal_times(4, 0.1), 1e-3);
     expect_contact(rod, result, 2e-3, 1e-5);
     EXPECT_GT(result.frames.back().energy.lost, 1e-4);
   }
@@ -202,7 +193,7 @@ TEST(RigidContactDynamics, AnObstacleThatTurnsCarriesTheRod) {
   EXPECT_LE(result.deepest_contact, 1e-3);
   const Eigen::AngleAxisd turn(0.5, Vector3d::UnitZ());
   const Vector3d pivot(0, -0.1, 0);
-  Eigen::Matrix3Xd points = result.frames.back().sample(dense()).points.colwise() - pivot;
+  Eigen::Matrix3Xd points = result.frames.back().sample(dense).points.colwise() - pivot;
   points = (turn.inverse().toRotationMatrix() * points).colwise() + pivot;
   EXPECT_GE(bar.clearances(points).minCoeff(), -2e-3);
   EXPECT_GT(result.frames.back().energy.work, 0.05);

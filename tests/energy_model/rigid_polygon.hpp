@@ -8,9 +8,10 @@
 
 namespace dlo::test {
 
-/// Damping of a RigidPolygon, and the floor below it.
+/// Damping and stress-free curvature of a RigidPolygon, and the floor below it.
 struct PolygonSurroundings {
   double material_damping = 0;
+  double natural_curvature = 0;
   double floor = -std::numeric_limits<double>::infinity();  ///< its y
 };
 
@@ -91,7 +92,8 @@ class RigidPolygon {
       const double angle = std::atan2(a.x() * b.y() - a.y() * b.x(), a.dot(b));
       const double rate = turning(b, velocity.col(i + 1) - velocity.col(i)) -
                           turning(a, velocity.col(i) - velocity.col(i - 1));
-      const double moment = (angle + around_.material_damping * rate) / segment_;
+      const double moment =
+          (angle + around_.material_damping * rate) / segment_ - around_.natural_curvature;
       const Eigen::Vector2d on_a = moment / a.squaredNorm() * Eigen::Vector2d(-a.y(), a.x());
       const Eigen::Vector2d on_b = moment / b.squaredNorm() * Eigen::Vector2d(-b.y(), b.x());
       // The joint turns a on and b back.
@@ -167,5 +169,22 @@ class RigidPolygon {
   Eigen::Matrix2Xd points_;
   Eigen::VectorXd inverse_mass_;
 };
+
+/// Returns step, 2 step, ... up to count steps.
+inline std::vector<double> equal_times(int count, double step) {
+  std::vector<double> times;
+  for (int i = 1; i <= count; ++i) times.push_back(step * i);
+  return times;
+}
+
+/// Returns the tip at increasing times, extrapolated to infinitely many points from a polygon and
+/// one of twice as many.
+inline Eigen::Matrix2Xd limit_of_tips(int free_points, double gamma, PolygonSurroundings around,
+                                      const std::vector<double>& times) {
+  const Eigen::Matrix2Xd coarse = RigidPolygon(free_points, gamma, around).tips(times);
+  const Eigen::Matrix2Xd fine = RigidPolygon(2 * free_points, gamma, around).tips(times);
+  const double ratio = std::pow((2 * free_points + 0.5) / (free_points + 0.5), 2);
+  return fine + (fine - coarse) / (ratio - 1);
+}
 
 }  // namespace dlo::test
