@@ -228,20 +228,6 @@ BENCHMARK_CAPTURE(random_clamped_rods, clamps_and_pin_planar, dlo::test::RandomS
 BENCHMARK_CAPTURE(random_clamped_rods, clamps_and_pin_spatial, dlo::test::RandomSpace::space, true)
     ->Unit(benchmark::kMillisecond);
 
-/// Measures the error and the time of one solve against the number of terms K.
-void terms(benchmark::State& state, double gamma) {
-  const Problem problem = clamp(gamma);
-  EnergySolver solver({.terms = static_cast<int>(state.range(0))});
-  for (auto _ : state) benchmark::DoNotOptimize(solver.solve(problem));
-  const Equilibrium result = solver.solve(problem);
-  report(state, result);
-  state.counters["error"] = error(result, gamma);
-}
-BENCHMARK_CAPTURE(terms, gamma_1, 1)->DenseRange(2, 12, 2);
-BENCHMARK_CAPTURE(terms, gamma_18, 18)->DenseRange(2, 22, 2);
-BENCHMARK_CAPTURE(terms, gamma_100, 100)->DenseRange(4, 40, 4);
-BENCHMARK_CAPTURE(terms, gamma_1000, 1000)->DenseRange(8, 40, 4);
-
 }  // namespace
 
 BENCHMARK_MAIN();

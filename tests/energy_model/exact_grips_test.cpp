@@ -4,11 +4,12 @@
 #include <gtest/gtest.h>
 
 #include <Eigen/Geometry>
-#include <random>
+#include <cstdint>
 
 #include "dlo/energy_model/energy.hpp"
 #include "dlo/energy_model/exact.hpp"
 #include "problems.hpp"
+#include "random_problems.hpp"
 #include "solved.hpp"
 
 namespace dlo::energy_model {
@@ -16,33 +17,6 @@ namespace {
 
 using test::heavy_cantilever;
 using test::two_clamps;
-
-/// Clamps, loads and weight in random directions; the size of the forces from 0.3 to 1000 EI/l^2.
-class RandomProblems {
- public:
-  explicit RandomProblems(unsigned seed) : engine_(seed) {}
-
-  Problem two_clamps() {
-    const double size = std::pow(10, -0.5 + 3.5 * uniform());
-    Problem problem = heavy_cantilever(0, 0);
-    problem.weight_per_length = size * vector().normalized();
-    problem.grips[0].direction = vector();
-    problem.loads = {{0.2 + 0.6 * uniform(), size / 2 * vector()}, {1.0, size / 2 * vector()}};
-    problem.grips.push_back({1, (0.2 + 0.7 * uniform()) * vector().normalized(), vector()});
-    return problem;
-  }
-
- private:
-  double uniform() { return std::uniform_real_distribution<double>()(engine_); }
-  Eigen::Vector3d vector() {
-    std::normal_distribution<double> normal;
-    const double x = normal(engine_);
-    const double y = normal(engine_);
-    return {x, y, normal(engine_)};
-  }
-
-  std::mt19937 engine_;
-};
 
 TEST(MultipleShooting, FindsWhatTheScanOfOneClampFinds) {
   // A clamp in the middle makes two cantilevers of the rod, which the scan takes one by one.
@@ -84,10 +58,8 @@ TEST(MultipleShooting, TakesForcesThatAreNotParallelBeyondTheScansLimit) {
 
 TEST(MultipleShooting, KeepsTheRodsFirstIntegral) {
   // |v|^2 / 2 + n.t + w.r is constant between loads; without weight so is n.
-  RandomProblems random(11);
-  for (int i = 0; i < 8; ++i) {
-    Problem problem = random.two_clamps();
-    problem.loads.clear();
+  for (std::uint64_t i = 0; i < 8; ++i) {
+    Problem problem = test::random_between_clamps(i, test::RandomSpace::space, false);
     if (i % 2 == 0) problem.weight_per_length.setZero();
     const Equilibrium result = test::converged(solve_exact(problem));
     const Eigen::Vector3d w = problem.weight_per_length;
@@ -108,8 +80,8 @@ TEST(MultipleShooting, KeepsTheRodsFirstIntegral) {
 }
 
 TEST(MultipleShooting, IsRightToTheIntegratorsTolerance) {
-  RandomProblems random(13);
-  const Problem problem = random.two_clamps();
+  Problem problem = test::random_between_clamps(1, test::RandomSpace::space, false);
+  problem.loads = {{0.4, {3, -2, 1}}};
   const Equilibrium finest = solve_exact(problem, {.tolerance = 1e-14});
   EXPECT_LT(test::gap_between(solve_exact(problem), finest), 1e-13);
   for (const double tolerance : {1e-7, 1e-9, 1e-11}) {

@@ -17,6 +17,7 @@
 #include "placement.hpp"
 #include "problems.hpp"
 #include "random_problems.hpp"
+#include "runge_kutta.hpp"
 #include "solved.hpp"
 
 namespace dlo::energy_model {
@@ -47,22 +48,14 @@ Problem hanging_rod(double curvature, double gamma) {
   return problem;
 }
 
-/// int f dtheta from a to b by Gauss-Legendre on panels.
+/// Returns int f dtheta from a to b by Simpson's rule, which is the Runge-Kutta method of f alone.
 template <class Function>
 double quadrature(double a, double b, Function f) {
-  constexpr std::array<double, 3> node = {0.238619186083196909, 0.661209386466264514,
-                                          0.932469514203152028};
-  constexpr std::array<double, 3> weight = {0.467913934572691047, 0.360761573048138608,
-                                            0.171324492379170345};
-  constexpr int panels = 60;
+  constexpr int panels = 2000;
+  const double h = (b - a) / panels;
+  const auto rate = [&](double at, double) { return f(at); };
   double sum = 0;
-  for (int p = 0; p < panels; ++p) {
-    const double half = (b - a) / panels / 2;
-    const double middle = a + (2 * p + 1) * half;
-    for (std::size_t k = 0; k < 3; ++k) {
-      sum += half * weight[k] * (f(middle - half * node[k]) + f(middle + half * node[k]));
-    }
-  }
+  for (int p = 0; p < panels; ++p) sum = test::runge_kutta(rate, a + p * h, sum, h);
   return sum;
 }
 

@@ -1,5 +1,5 @@
-// Rods of several sections by multiple shooting, against a stepped column's buckling load, two
-// springs in series, and the balance of forces.
+// Rods of several sections by multiple shooting, against a stepped column's buckling load and two
+// springs in series.
 
 #include <gtest/gtest.h>
 
@@ -8,9 +8,7 @@
 #include <numbers>
 
 #include "dlo/energy_model/exact.hpp"
-#include "equilibrium_balance.hpp"
 #include "problems.hpp"
-#include "random_problems.hpp"
 #include "solved.hpp"
 
 namespace dlo::energy_model {
@@ -64,43 +62,6 @@ TEST(ExactSections, ATautRodOfTwoTorsionalStiffnessesTwistsAsTwoSprings) {
   const double compliance = 0.7 / 0.5 + 0.3 / 2;
   EXPECT_NEAR(result.twists[0].angle, compliance * result.twists[0].torque, 1e-12);
   EXPECT_NEAR(result.energy.twisting, compliance * std::pow(result.twists[0].torque, 2) / 2, 1e-12);
-}
-
-/// Grips that a random curve goes through, forces of up to some 30 EI/l^2, two or three sections.
-Problem random_rod(std::uint64_t number, test::RandomSpace space) {
-  test::RandomNumbers random(7000 + number);
-  const double size = std::pow(10, random.uniform(-1, 1.5));
-  Problem problem = heavy_cantilever(size, 0);
-  problem.grips.clear();
-  const test::RandomCurve curve(random, space);
-  const int grips = 1 + random.below(3);
-  for (const double at : test::random_grip_places(random, grips)) {
-    const bool clamp = grips == 1 || random.chance(0.6);
-    problem.grips.push_back(
-        {at, 0.95 * curve.point(at), clamp ? std::optional(curve.tangent(at)) : std::nullopt, {}});
-  }
-  problem.loads = {{random.uniform(), size * random.direction(space)}};
-  double at = random.uniform(0, 0.3);
-  for (int i = 0; i < 2; ++i) {
-    const double end = at + random.uniform(0.05, 0.3);
-    const double stiffness = std::exp(random.uniform(-2, 2));
-    problem.sections.push_back(
-        {at, end, stiffness, 0, problem.weight_per_length * random.uniform(0, 3)});
-    at = end + (random.chance(0.5) ? 0 : 0.03);
-  }
-  return problem;
-}
-
-TEST(ExactSections, RandomRodsAreInBalance) {
-  for (const auto space : {test::RandomSpace::plane, test::RandomSpace::space}) {
-    for (std::uint64_t number = 0; number < 6; ++number) {
-      const Problem problem = random_rod(number, space);
-      const Equilibrium result = solve_exact(problem);
-      EXPECT_EQ(result.status, SolveStatus::converged) << number << ": " << result.message;
-      if (result.status != SolveStatus::converged) continue;
-      EXPECT_LT(test::balance_of(problem, result, 0.005).worst(), 1e-9) << number;
-    }
-  }
 }
 
 }  // namespace

@@ -172,16 +172,6 @@ TEST(NaturalRod, OfAllKindsObeysKirchhoffsEquations) {
 
 TEST(Strip, OfAllKindsObeysKirchhoffsEquations) { expect_kirchhoff_of_random_rods(20261123, true); }
 
-TEST(Sections, OfTheRodsOwnKindChangeNothing) {
-  Problem problem = clamped_rod();
-  problem.weight_per_length = {0, -8, 0};
-  const Equilibrium plain = solved_rod(problem);
-  problem.sections = {{0.3, 0.55, 1, 2.0 / 3, {0, -8, 0}}};
-  const Equilibrium cut = solved_rod(problem);
-  EXPECT_LT((point_at(plain, 1) - point_at(cut, 1)).norm(), 1e-11);
-  EXPECT_NEAR(plain.energy.total(), cut.energy.total(), 1e-12);
-}
-
 TEST(Sections, ObeyKirchhoffsEquationsInThePlaneAndInSpace) {
   for (const double aside : {0.0, 2.0}) {
     Problem problem = clamped_rod();

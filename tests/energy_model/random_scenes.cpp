@@ -46,33 +46,24 @@ struct Options {
 
 Options read_options(int argc, char** argv) {
   Options options;
+  const std::map<std::string, std::uint64_t*> counts = {
+      {"--plane", &options.plane},     {"--space", &options.space}, {"--twisted", &options.twisted},
+      {"--curved", &options.curved},   {"--mixed", &options.mixed}, {"--strip", &options.strip},
+      {"--balance", &options.balance}, {"--first", &options.first}};
   for (int i = 1; i < argc; i += 2) {
     const std::string name = argv[i];
     if (i + 1 == argc) throw std::invalid_argument(name + " wants a value");
     const std::string value = argv[i + 1];
     std::size_t used = 0;
-    if (name == "--plane") {
-      options.plane = std::stoul(value, &used);
-    } else if (name == "--space") {
-      options.space = std::stoul(value, &used);
-    } else if (name == "--twisted") {
-      options.twisted = std::stoul(value, &used);
-    } else if (name == "--curved") {
-      options.curved = std::stoul(value, &used);
-    } else if (name == "--mixed") {
-      options.mixed = std::stoul(value, &used);
-    } else if (name == "--strip") {
-      options.strip = std::stoul(value, &used);
-    } else if (name == "--balance") {
-      options.balance = std::stoul(value, &used);
+    const auto count = counts.find(name);
+    if (count != counts.end()) {
+      *count->second = std::stoul(value, &used);
     } else if (name == "--exact") {
       if (value != "search" && value != "energy") {
         throw std::invalid_argument("--exact " + value + " (allowed: search, energy)");
       }
       if (value == "energy") options.exact = dlo::test::ExactFrom::energy;
       used = value.size();
-    } else if (name == "--first") {
-      options.first = std::stoul(value, &used);
     } else if (name == "--time-limit") {
       options.time_limit = std::stod(value, &used);
     } else if (name == "--write") {

@@ -48,4 +48,16 @@ double gap_between(const Shape& a, const Shape& b,
   return (a.sample(s).points - b.sample(s).points).colwise().norm().maxCoeff();
 }
 
+/// Returns a director at a sample, carried to the next sample without twist by double reflection
+/// (Wang, Juettler, Zheng and Liu 2008), which is right to the fourth power of the step.
+inline Eigen::Vector3d carried(const energy_model::Samples& samples, Eigen::Index i,
+                               const Eigen::Vector3d& director) {
+  const auto reflected = [](const Eigen::Vector3d& x, const Eigen::Vector3d& normal) {
+    return Eigen::Vector3d(x - 2 * x.dot(normal) / normal.squaredNorm() * normal);
+  };
+  const Eigen::Vector3d chord = samples.points.col(i + 1) - samples.points.col(i);
+  const Eigen::Vector3d t = reflected(samples.tangents.col(i), chord);
+  return reflected(reflected(director, chord), samples.tangents.col(i + 1) - t);
+}
+
 }  // namespace dlo::test

@@ -82,15 +82,6 @@ TEST(Twist, TorqueIsTheDerivativeOfTheEnergyByTheTurn) {
   }
 }
 
-TEST(Twist, KeepsForcesAndTorquesInBalance) {
-  Problem problem = turned_rod(0.75, 3, 10);
-  problem.grips.back().direction = Eigen::Vector3d(1, 0.3, -0.5);
-  problem.grips.push_back({0.4, {0.25, -0.1, 0.05}});
-  problem.loads = {{0.6, {0, 4, -2}}};
-  const Equilibrium equilibrium = solved(problem);
-  EXPECT_LT(test::balance_of(problem, equilibrium, 0.02).worst(), 1e-7);
-}
-
 /// A point of a helix, its tangent and its normal.
 struct HelixPoint {
   Eigen::Vector3d r, t, normal;

@@ -44,19 +44,13 @@ void expect_unit_and_across(const Samples& samples) {
   }
 }
 
-/// Angles by which d1 turns from sample to sample against a director that is carried along by
-/// double reflections (Wang, Juettler, Zheng and Liu 2008), which are right to the fourth power of
-/// the step.
+/// Returns the angles by which d1 turns from sample to sample against a director that is carried
+/// along without twist.
 std::vector<double> turns(const Samples& samples) {
   std::vector<double> angles;
   for (Eigen::Index i = 0; i + 1 < samples.points.cols(); ++i) {
-    const auto reflected = [](const Vector3d& x, const Vector3d& normal) {
-      return Vector3d(x - 2 * x.dot(normal) / normal.squaredNorm() * normal);
-    };
-    const Vector3d chord = samples.points.col(i + 1) - samples.points.col(i);
     const Vector3d to = samples.tangents.col(i + 1);
-    const Vector3d t = reflected(samples.tangents.col(i), chord);
-    const Vector3d carried = reflected(reflected(samples.d1.col(i), chord), to - t);
+    const Vector3d carried = test::carried(samples, i, samples.d1.col(i));
     const Vector3d d1 = samples.d1.col(i + 1);
     angles.push_back(std::atan2(to.dot(carried.cross(d1)), carried.dot(d1)));
   }
