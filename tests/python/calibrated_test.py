@@ -55,6 +55,8 @@ def test_what_calibrate_returns_is_what_its_file_says(cable, tmp_path):
     guess = cable.replace(material={"youngs_modulus": "1 MPa", "density": 1150})
     truth = dlo.solve(cable, model="exact", samples=15)
     fit = dlo.calibrate(guess, [(truth.points, truth.arc_length)])
+    assert fit.youngs_modulus == pytest.approx(5e6, rel=1e-6)
+    assert fit.interval[0] <= 5e6 <= fit.interval[1]
     (tmp_path / "fit.toml").write_text(fit.to_toml())
     found = dlo.solve(guess, model="exact", samples=15, calibrated=fit)
     numpy.testing.assert_array_equal(

@@ -77,8 +77,9 @@ def test_energy_and_reactions_are_of_now_whatever_was_looked_at(cable):
     loop.move_gripper(0, position=(0, 0.1, 0))
     loop.rest()
     assert loop.energy() - energy == pytest.approx(0.1 * cable.mass * 9.81, rel=1e-3)
-    loop.move_gripper(0, position=(0, 0.1, 0), direction=(0, -1, 0))
+    loop.move_gripper(0, position=(0, 0.1, 0), direction=(0, -2, 0))
     loop.rest()
+    numpy.testing.assert_allclose(loop.points()[:, 0], 0, atol=1e-4)
     reactions = loop.reactions()
     loop.points()
     numpy.testing.assert_array_equal(reactions, loop.reactions())
@@ -92,25 +93,12 @@ def test_it_says_what_it_cannot_do(cable):
         loop.move_gripper(0, position=(0, 0, 0), direction=(0, 0, 0))
     with pytest.raises(dlo.InputError, match=r"shape \(2,\)"):
         loop.move_gripper(0, position=(0, 0))
+    with pytest.raises(dlo.InputError, match="gripper = 1"):
+        loop.move_gripper(1, position=(0, 0, 0))
     with pytest.raises(dlo.InputError, match="wall = 0: no plane"):
         loop.move_wall(0, point=(0, 0, 0), normal=(0, 1, 0))
     with pytest.raises(dlo.ConvergenceError, match="did not come to rest: .* after 10 steps"):
         loop.rest(max_steps=10)
-
-
-def test_a_moved_gripper_takes_the_rod_along(cable):
-    loop = dlo.ForceModel(cable)
-    loop.rest()
-    before = loop.points()
-    shift = numpy.array([0.1, 0.2, -0.1])
-    loop.move_gripper(0, position=shift)
-    loop.rest()
-    numpy.testing.assert_allclose(loop.points(), before + shift, atol=1e-5)
-    loop.move_gripper(0, position=(0, 0, 0), direction=(0, -2, 0))
-    loop.rest()
-    numpy.testing.assert_allclose(loop.points()[:, 0], 0, atol=1e-4)
-    with pytest.raises(dlo.InputError, match="gripper = 1"):
-        loop.move_gripper(1, position=(0, 0, 0))
 
 
 def test_a_moved_wall_lifts_the_rod(cable):

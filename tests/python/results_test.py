@@ -141,16 +141,6 @@ def test_grippers_bear_the_weight(cable):
     assert solution.tension.shape == solution.curvature.shape == solution.arc_length.shape
 
 
-def test_calibrate_finds_the_modulus_it_was_given(cable):
-    exact = dlo.solve(cable, model="exact", samples=15)
-    guess = cable.replace(material={"youngs_modulus": "1 MPa", "density": 1150})
-    fit = dlo.calibrate(guess, [(exact.points, exact.arc_length)])
-    assert fit.youngs_modulus == pytest.approx(5e6, rel=1e-6)
-    low, high = fit.interval
-    assert low <= 5e6 <= high
-    assert "calibrated" in fit.to_toml()
-
-
 def test_each_simulator_makes_the_same_joint_of_its_parameter(root):
     """A joint's stiffness follows from each parameter by its unit; a capsule has the mass of its segment."""
     numbers = {"k": 0.2, "k_b": 0.19, "h": 0.05, "r": 0.004, "m": 0.06, "pi": math.pi}

@@ -104,30 +104,6 @@ def test_every_field_can_be_set_and_read(steel):
     assert steel.force_model.points == 24
 
 
-def arcs(s):
-    """A shaft of 0.2 m, an arc of 80 1/m, one of 40 1/m."""
-    a, b = 80 * numpy.clip(s - 0.2, 0, 0.02), 40 * numpy.clip(s - 0.22, 0, None)
-    x = numpy.minimum(s, 0.2) + numpy.sin(a) / 80 + (numpy.sin(a + b) - numpy.sin(a)) / 40
-    y = (1 - numpy.cos(a)) / 80 + (numpy.cos(a) - numpy.cos(a + b)) / 40
-    return numpy.column_stack([x, y, 0 * s])
-
-
-def test_a_rest_shape_from_points_or_a_file_comes_back(tmp_path):
-    s = numpy.linspace(0, 0.24, 61)
-    numpy.savetxt(tmp_path / "points.csv", arcs(s), delimiter=",")
-    fields = dict(
-        length=0.24, gravity=(0, 0, 0), bending_stiffness=1e-3, mass_per_length=4e-3,
-        grippers=[dlo.clamp(at=0, position=(0, 0, 0), direction="0 deg")],
-    )
-    for rest_shape in (arcs(s), arcs(s).tolist(), str(tmp_path / "points.csv")):
-        wire = dlo.Scene(rest_shape=rest_shape, **fields)
-        assert wire.rest_shape_error < 1e-9
-        numpy.testing.assert_allclose(dlo.solve(wire, samples=2).points[-1], arcs(s)[-1], atol=1e-8)
-    assert math.isnan(wire.replace(rest_shape=None).rest_shape_error)
-    with pytest.raises(dlo.InputError, match="given besides helix"):
-        wire.replace(helix={"radius": 1, "pitch": 1})
-
-
 def test_a_solved_shape_with_its_frames_is_a_rest_shape(tmp_path):
     clamp = dlo.clamp(at=0, position=(0, 0, 0), frame=numpy.eye(3).tolist())
     fields = dict(
@@ -142,7 +118,14 @@ def test_a_solved_shape_with_its_frames_is_a_rest_shape(tmp_path):
         again = dlo.Scene(rest_shape=rest_shape, **fields)
         assert again.rest_shape_error < 1e-9 and again.rest_shape_angle < 1e-7
         numpy.testing.assert_allclose(dlo.solve(again, samples=81).d1, coil.d1, atol=1e-7)
-    assert math.isnan(helix.rest_shape_angle)
+    assert math.isnan(helix.rest_shape_angle) and math.isnan(helix.rest_shape_error)
+    bare = dlo.Scene(rest_shape=coil.points, **fields)
+    assert math.isnan(bare.rest_shape_angle)
+    # Without frames the coil is where its clamp's frame turns it.
+    chord = numpy.linalg.norm(dlo.solve(bare, samples=2).points[-1])
+    assert abs(chord - numpy.linalg.norm(coil.points[-1])) < 4 * bare.rest_shape_error < 1e-4
+    with pytest.raises(dlo.InputError, match="given besides helix"):
+        bare.replace(helix={"radius": 1, "pitch": 1})
 
 
 def test_a_helix_and_a_cable_are_keys_of_the_rod():
