@@ -91,21 +91,6 @@ class Chain:
     def slope(self, angle):
         return 1.0 if self.is_linear else 1 + math.tan(angle / 2) ** 2
 
-    def energy(self, angles):
-        total, before = 0.0, self.clamp
-        for k, angle in enumerate(angles):
-            turn = angle - before
-            if self.is_linear:
-                total += self.springs[k] * turn**2 / 2
-            elif abs(turn) < 3:
-                total -= 4 * self.springs[k] * math.log(math.cos(turn / 2))
-            else:
-                return math.inf
-            force = self.carried[k]
-            total -= self.lengths[k] * (force[0] * math.cos(angle) + force[1] * math.sin(angle))
-            before = angle
-        return total
-
     def derivatives(self, angles):
         n = len(angles)
         gradient, diagonal, lower = [0.0] * n, [0.0] * n, [0.0] * (n - 1)
@@ -121,36 +106,18 @@ class Chain:
                 lower[k - 1] -= slope
         return gradient, diagonal, lower
 
-    def rest(self):
-        """Newton's method in ever larger steps of time, which goes downhill."""
-        angles, damping = [self.clamp + 1e-9 * (k + 1) for k in range(len(self.lengths))], 1.0
-        scale = max(self.springs[1:])
-        for _ in range(2000):
-            gradient, diagonal, lower = self.derivatives(angles)
-            if max(map(abs, gradient)) < 1e-12 * scale:
-                break
-            step = tridiagonal(lower, [d + damping * scale for d in diagonal], [-g for g in gradient])
-            if step is not None:
-                trial = [a + d for a, d in zip(angles, step)]
-                if max(map(abs, step)) < 0.5 and self.energy(trial) <= self.energy(angles) + 1e-15 * scale:
-                    angles, damping = trial, damping / 4 if damping > 1e-12 else 0.0
-                    continue
-            damping = max(4 * damping, 1e-6)
-            if damping > 1e12:
-                break
-        return angles
-
-    def on_the_way(self):
-        """A hundred implicit steps of its way, for its time of relaxation."""
+    def moved(self, steps, growth):
+        """Angles after implicit steps of its way to rest, each longer than the last by a factor."""
         angles = [self.clamp] * len(self.lengths)
         time = self.relaxation / 100
-        for _ in range(100):
+        for _ in range(steps):
             gradient, diagonal, lower = self.derivatives(angles)
             step = tridiagonal(lower, [d + h / time for d, h in zip(diagonal, self.lengths)], [-g for g in gradient])
             if step is None:
                 time /= 2
                 continue
             angles = [a + d for a, d in zip(angles, step)]
+            time *= growth
         return angles
 
     def points(self, angles):
@@ -180,7 +147,7 @@ def shape(defect, scene, points):
     chain = Chain(scene, points, defect)
     if defect == "limp":
         return list(chain.points([-math.pi / 2] * len(chain.lengths)))
-    return list(chain.points(chain.on_the_way() if defect == "not_at_rest" else chain.rest()))
+    return list(chain.points(chain.moved(100, 1) if defect == "not_at_rest" else chain.moved(200, 1.2)))
 
 
 def main():
