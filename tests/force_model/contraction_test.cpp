@@ -54,11 +54,6 @@ TEST(Contraction, SegmentOfZeroLengthIsPushedApartAlongItsNeighbours) {
   EXPECT_NEAR(forces(1, 2), c_c, 1e-15);
 }
 
-TEST(Contraction, ManyPointsInOnePlaceStillGiveFiniteForces) {
-  const Eigen::Matrix3Xd points = Eigen::Matrix3Xd::Zero(3, 6);
-  EXPECT_TRUE(forces_of(points, Eigen::VectorXd::Ones(5)).allFinite());
-}
-
 TEST(Contraction, RefusesWhatIsNotARod) {
   Eigen::Matrix3Xd points = random_polygon(4, 3, 0.1, 0);
   Eigen::Matrix3Xd forces = Eigen::Matrix3Xd::Zero(3, 4);

@@ -136,28 +136,16 @@ TEST(GripReaction, OfTwoGripsIsNotCountedTwice) {
   }
 }
 
-TEST(GripReaction, IsTheSameWithoutAnAllocation) {
+TEST(GripReaction, ComesWithTheForcesWithoutAnAllocation) {
   const SteelRod steel;
-  Rod rod = steel.rod({BendingLaw::hooke, steel.EI}, 660);
-  Grip end;  // the last point on a spring
-  end.first_point = steel.points - 1;
-  end.targets = Eigen::Vector3d(0.4, 0.1, 0.05);
-  end.hold = GripHold::spring;
-  end.stiffness = 3;
-  rod.grips.push_back(end);
-  const std::vector<GripReaction> expected = grip_reactions(rod, steel.straight());
+  const Rod rod = steel.rod({BendingLaw::hooke, steel.EI}, 660);
   Eigen::Matrix3Xd forces(3, steel.points);
-  std::vector<GripReaction> reactions(2);
+  Eigen::Matrix3Xd total = forces;
+  std::vector<GripReaction> reactions(1);
   grip_reactions(rod, steel.straight(), forces, reactions);
-  for (std::size_t i = 0; i < 2; ++i) {
-    EXPECT_EQ(reactions[i].force, expected[i].force);
-    EXPECT_EQ(reactions[i].torque, expected[i].torque);
-  }
-  EXPECT_GT(reactions[1].force.norm(), 0);
-  Eigen::Matrix3Xd total(3, steel.points);
   total_forces(rod, steel.straight(), total);
   EXPECT_EQ(forces, total);
-  reactions.resize(1);
+  reactions.clear();
   EXPECT_THROW(grip_reactions(rod, steel.straight(), forces, reactions), std::invalid_argument);
 }
 

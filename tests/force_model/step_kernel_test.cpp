@@ -7,7 +7,6 @@
 #include <cmath>
 #include <string>
 #include <tuple>
-#include <utility>
 #include <vector>
 
 #include "dlo/force_model/simulation.hpp"
@@ -172,22 +171,6 @@ TEST(Kernel, LeavesThePlaneWhenATargetDoes) {
   simulation.move_grip(0, targets, {0, 0, 0.01});
   ASSERT_EQ(simulation.step().status, StepStatus::good);
   EXPECT_GT(std::abs(simulation.points()(2, 2)), 0);
-}
-
-TEST(Kernel, CopiesOfASimulationAreIndependent) {
-  const Variant variant{BendingLaw::hooke, Stepper::dynamic, GripHold::rigid, Walls::none,
-                        Space::full};
-  const Rod rod = random_rod(4, 16, variant);
-  Simulation first(rod, random_points(4, 16, Space::full), options_for(Stepper::dynamic, rod));
-  (void)first.step();
-  Simulation second(first);
-  const Eigen::Matrix3Xd before = second.points();
-  (void)first.step();
-  EXPECT_EQ(second.points(), before);
-  (void)second.step();
-  EXPECT_EQ(second.points(), first.points());
-  second = std::move(first);
-  EXPECT_EQ(second.steps(), 2);
 }
 
 }  // namespace

@@ -66,19 +66,6 @@ TEST(UnlikeJoints, ForcesAreTheGradientOfTheEnergyAndBalance) {
   }
 }
 
-TEST(UnlikeJoints, EqualStiffnessesAreOneStiffness) {
-  constexpr Eigen::Index n = 9;
-  const Eigen::VectorXd rest = Eigen::VectorXd::Constant(n, 0.04);
-  const Eigen::Matrix3Xd points = random_polygon(6, n, 0.04, 0.1);
-  for (const BendingLaw law : {BendingLaw::hooke, BendingLaw::paper}) {
-    Eigen::Matrix3Xd same = Eigen::Matrix3Xd::Zero(3, n + 1);
-    Eigen::Matrix3Xd each = same;
-    add_bending_forces(points, rest, {law, 0.3}, same);
-    add_bending_forces(points, rest, {law, 7, Eigen::VectorXd::Constant(n - 1, 0.3)}, each);
-    EXPECT_EQ(same, each);
-  }
-}
-
 /// Returns the points of a polygon in the plane z = 0 with the given angles at its joints [rad].
 Eigen::Matrix3Xd turned_polygon(const Eigen::VectorXd& rest, const Eigen::VectorXd& at_joints) {
   Eigen::Matrix3Xd points = Eigen::Matrix3Xd::Zero(3, rest.size() + 1);
