@@ -49,6 +49,7 @@ TEST_F(Command, PaperHasTheSameNumbersInJsonAndInCsv) {
     EXPECT_NEAR(std::stod(row.at(1)), value, 1e-10 * std::abs(value.get<double>())) << row[0];
   }
   ASSERT_EQ(document.at("cases").size(), 6U);
+  EXPECT_NEAR(document.at("cases")[0].at("effective_modulus_ratio"), 0.0285, 0.5001e-4);
   const json& moving = document.at("moving");
   // The eleven of Tables 2 to 4, and their five movements with three more steppers.
   ASSERT_EQ(moving.at("rows").size(), 26U);

@@ -8,7 +8,6 @@
 
 #include "dlo/compare/chain.hpp"
 #include "dlo/compare/deviation.hpp"
-#include "dlo/compare/error.hpp"
 #include "dlo/compare/force.hpp"
 #include "dlo/compare/force_model_settings.hpp"
 #include "dlo/compare/reference.hpp"
@@ -259,13 +258,6 @@ points = 160
   EXPECT_NEAR(table + energy.grippers[0].force.y() + energy.grippers[1].force.y(), weight,
               1e-3 * weight);
   EXPECT_NEAR(solve(scene, Model::chain).obstacles[0].y(), table, 0.02 * weight);
-}
-
-TEST(Solve, WhatDoesNotConvergeIsAnError) {
-  const Scene scene = heavy_scene(10, 0);
-  EXPECT_THROW((void)solve(scene, Model::energy, {.max_evaluations = 2}), ConvergenceError);
-  EXPECT_THROW((void)solve(scene, Model::chain, {.max_evaluations = 2}), ConvergenceError);
-  EXPECT_THROW((void)solve(scene, Model::force, {.max_steps = 10}), ConvergenceError);
 }
 
 }  // namespace

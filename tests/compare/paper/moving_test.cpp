@@ -40,16 +40,6 @@ TEST(MovingExperiment, SpringsOfAHorizontalRodPullAgainstEachOther) {
   EXPECT_GT(held.final_force, 0.98 * 40 * weight_of_a_point);
 }
 
-TEST(MovingExperiment, NeedsTheNominalStepsIfNothingMoves) {
-  for (const MovingVariant variant : {MovingVariant::basic, MovingVariant::relative}) {
-    const MovingRun still = run(Movement::rotation, false, variant, {.angle = 0});
-    EXPECT_EQ(still.status, MovingStatus::finished);
-    EXPECT_EQ(still.steps, nominal_moving_steps);
-    EXPECT_EQ(still.damped_steps, 0);
-    EXPECT_EQ(still.limited_steps, 0);
-  }
-}
-
 TEST(MovingExperiment, NeedsMoreStepsExactlyIfSomeWereScaledDown) {
   for (const double start_offset : {0.0, 1.0}) {
     for (const MovingVariant variant : {MovingVariant::basic, MovingVariant::relative,
@@ -64,23 +54,6 @@ TEST(MovingExperiment, NeedsMoreStepsExactlyIfSomeWereScaledDown) {
       EXPECT_TRUE(variant != MovingVariant::basic || scaled_down == 0);
     }
   }
-}
-
-TEST(MovingExperiment, WithoutDynamicsDragGrowsWithSpeedAndWithDynamicsLess) {
-  // A moved point needs the force v / c_F without dynamics and (1 - c_h) v / c_F with it.
-  const MovingChoices slow{.distance = 0.02};
-  const MovingChoices fast{.distance = 0.04};
-  const auto drag = [](MovingVariant variant, const MovingChoices& choices) {
-    return run(Movement::uniform, false, variant, choices).average_net_force;
-  };
-  EXPECT_GT(drag(MovingVariant::relative, fast), drag(MovingVariant::relative, slow));
-  EXPECT_GT(drag(MovingVariant::relative, fast), drag(MovingVariant::dynamic, fast));
-}
-
-TEST(MovingExperiment, IsUnstableWithTable1InMetres) {
-  // c_e c_F = 4.9 > 2: the gripper's spring alone.
-  const MovingRun metres = run(Movement::rotation, false, MovingVariant::basic, {.length_unit = 1});
-  EXPECT_EQ(metres.status, MovingStatus::diverged);
 }
 
 // Formula 19 is Stoermer-Verlet for points of mass m* with damping rate (1 - c_h)/dt.

@@ -52,20 +52,6 @@ TEST(Discretise, ConsistentBookkeepingHoldsTheMiddleOfASegment) {
   EXPECT_LT(shape.points.col(0).norm(), 1e-16);
 }
 
-TEST(Discretise, LoadsKeepTheirForceAndMoment) {
-  Scene scene = heavy_scene(0, 0);
-  scene.gravity.setZero();
-  scene.loads = {{0.37, {0, 2, 0}}, {1.0, {0, 0, 3}}};
-  for (const Bookkeeping bookkeeping : {Bookkeeping::paper, Bookkeeping::consistent}) {
-    scene.force_model.bookkeeping = bookkeeping;
-    const Discretisation d = discretise(scene, scene.force_model);
-    EXPECT_LT((d.rod.loads.rowwise().sum() - Eigen::Vector3d(0, 2, 3)).norm(), 1e-14);
-    const Eigen::VectorXd s = Eigen::Map<const Eigen::VectorXd>(d.arc_length.data(), 16);
-    EXPECT_NEAR(d.rod.loads.row(1) * s, 0.37 * 2, 1e-14);
-    EXPECT_NEAR(d.rod.loads.row(2) * s, 3, 1e-14);
-  }
-}
-
 TEST(Discretise, FitsEqualSegmentsBetweenTheGrips) {
   Scene scene = heavy_scene(1, 0);
   scene.grippers = {
@@ -107,21 +93,6 @@ TEST(Discretise, FitsEqualSegmentsBetweenTheGrips) {
           0.25);
     }
   }
-}
-
-TEST(Discretise, HoldsBothEndsInTheMiddleOfASegment) {
-  Scene scene = test::two_clamps(1, {0.8, 0, 0});
-  const Discretisation d = discretise(scene, scene.force_model);
-  const double L = 1.0 / 14;
-  EXPECT_DOUBLE_EQ(d.parameters.segment_length, L);
-  EXPECT_LT((d.rod.rest_lengths.array() - L).abs().maxCoeff(), 1e-15);
-  EXPECT_NEAR(d.arc_length.front(), -L / 2, 1e-16);
-  EXPECT_NEAR(d.arc_length.back(), 1 + L / 2, 1e-15);
-  EXPECT_EQ(d.weights.col(0).norm() + d.weights.col(15).norm(), 0);
-  const Shape shape = d.shape(d.starts.front());
-  EXPECT_EQ(shape.arc_length.front(), 0);
-  EXPECT_EQ(shape.arc_length.back(), 1);
-  EXPECT_EQ(shape.points.col(15), Eigen::Vector3d(0.8, 0, 0));
 }
 
 /// The message with which a scene is refused.
