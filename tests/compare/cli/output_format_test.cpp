@@ -2,8 +2,6 @@
 
 #include <gtest/gtest.h>
 
-#include <algorithm>
-#include <cctype>
 #include <cmath>
 #include <nlohmann/json.hpp>
 #include <regex>
@@ -40,29 +38,11 @@ const std::string held_at_both_ends =
 /// The first word of an output that is NaN, infinite or -0, or that only a programmer of dlo knows;
 /// empty: none.
 std::string wrong_word(const std::string& text) {
-  for (const char* internal : {"Problem:", "solve_energy", "solve_exact", "solve_polygon"}) {
-    if (text.find(internal) != std::string::npos) return internal;
-  }
-  const auto is_of_word = [](char c) {
-    return std::isalnum(static_cast<unsigned char>(c)) != 0 || c == '_' || c == '.';
-  };
-  for (std::size_t begin = 0; begin < text.size();) {
-    const std::size_t sign = text[begin] == '-' || text[begin] == '+' ? 1 : 0;
-    std::size_t end = begin + sign;
-    while (end < text.size() && is_of_word(text[end])) ++end;
-    std::string word = text.substr(begin + sign, end - begin - sign);
-    std::transform(word.begin(), word.end(), word.begin(),
-                   [](unsigned char c) { return std::tolower(c); });
-    const bool is_zero = !word.empty() && word.find_first_not_of("0.") == std::string::npos &&
-                         word.find('0') != std::string::npos;
-    const bool joined = begin > 0 && is_of_word(text[begin - 1]);  // as in 1e-05 or at-0
-    if (word == "nan" || word == "inf" || word == "infinity" ||
-        (is_zero && text[begin] == '-' && !joined)) {
-      return text.substr(begin, end - begin);
-    }
-    begin = std::max(end, begin + 1);
-  }
-  return "";
+  static const std::regex wrong(
+      "Problem:|solve_(?:energy|exact|polygon)|"
+      "(?:^|[^\\w.])(?:[Nn][Aa][Nn]|[Ii][Nn][Ff](?:[Ii][Nn][Ii][Tt][Yy])?|-[0.]*0[0.]*)(?![\\w.])");
+  std::smatch found;
+  return std::regex_search(text, found, wrong) ? found.str() : "";
 }
 
 /// Returns commands that a user may run on the scene that `dlo init` has written; some in one

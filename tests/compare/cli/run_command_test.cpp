@@ -9,7 +9,6 @@
 
 #include <csignal>
 #include <fstream>
-#include <optional>
 #include <string>
 #include <thread>
 #include <vector>
@@ -18,15 +17,12 @@
 #include "dlo/compare/error.hpp"
 #include "option/output.hpp"
 #include "scene_text.hpp"
-#include "shell_words.hpp"
 
 namespace {
 
 using dlo::cli::RedirectedOutput;
 using dlo::test::Command;
 using dlo::test::Outcome;
-using dlo::test::shell_words;
-using Words = std::vector<std::string>;
 
 class RunCommand : public Command {};
 
@@ -118,19 +114,6 @@ TEST(RedirectedOutputTest, HoldsForAllThreadsUntilItsEnd) {
   }
   EXPECT_EQ(out + inner, "outerinner");
   EXPECT_EQ(RedirectedOutput::current(), nullptr);
-}
-
-TEST(ShellWords, AreThoseOfTheShell) {
-  EXPECT_EQ(shell_words("  solve a.toml\t--c-c '5 kg' "),
-            (Words{"solve", "a.toml", "--c-c", "5 kg"}));
-  EXPECT_EQ(shell_words("--with a='sh -c \"x; y\" {shape}'"),
-            (Words{"--with", "a=sh -c \"x; y\" {shape}"}));
-  EXPECT_EQ(shell_words(R"(a\ b "c\"d\e" '' "")"), (Words{"a b", R"(c"d\e)", "", ""}));
-  EXPECT_EQ(shell_words(""), Words{});
-  for (const char* line : {"a | b", "a >b", "a; b", "a & b", "$a", "\"$a\"", "`a`", "a*", "a?", "~",
-                           "[a]", "# a", "(a)", "a\nb", "'a", "\"a", "a\\"}) {
-    EXPECT_EQ(shell_words(line), std::nullopt) << line;
-  }
 }
 
 }  // namespace

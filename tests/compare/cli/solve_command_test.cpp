@@ -161,6 +161,17 @@ TEST_F(Command, SolveStatesTheStableEquilibriaThatItsSearchFound) {
   ASSERT_GT(energies.size(), 1);
   EXPECT_EQ(all.at("stable_energies_J"), energies);
   EXPECT_TRUE(json_of("solve " + path + " --model chain").at("stable_energies_J").empty());
+  const json state = json_of("compare " + path + " --no-modulus").at("cases")[0].at("state");
+  json listed = json::array({state.at("energy_J")});
+  for (const json& other : state.at("others")) {
+    EXPECT_TRUE(other.at("stable"));
+    listed.push_back(state.at("energy_J").get<double>() +
+                     other.at("energy_difference_J").get<double>());
+  }
+  ASSERT_EQ(listed.size(), energies.size());
+  for (std::size_t i = 0; i < listed.size(); ++i) {
+    EXPECT_NEAR(listed[i], energies[i].get<double>(), 1e-9);
+  }
 }
 
 }  // namespace

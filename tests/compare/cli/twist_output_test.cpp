@@ -1,59 +1,21 @@
-// Tests of the output for a rod that grippers twist, by models with and without twist.
+// Tests of commands on a rod that grippers twist, by models with and without twist.
 
 #include <gtest/gtest.h>
 
-#include <cmath>
 #include <nlohmann/json.hpp>
 #include <numbers>
 #include <string>
 #include <vector>
 
 #include "command_fixture.hpp"
-#include "dlo/compare/scene_file.hpp"
-#include "format/result_output.hpp"
-#include "scenes.hpp"
 
 namespace {
 
-using dlo::compare::Plan;
-using dlo::compare::Scene;
-using dlo::compare::Solution;
 using dlo::test::Outcome;
 using dlo::test::says;
 using dlo::test::says_none;
-using Eigen::Vector3d;
 using nlohmann::json;
 using std::numbers::pi;
-
-/// Two clamps along x, the second of which is turned by half a turn.
-Scene twisted_by_two_grippers() {
-  Scene scene = dlo::test::heavy_scene(1, 0);
-  scene.torsional_stiffness = 0.5;
-  scene.grippers.push_back({.at = 1, .position = {0.8, 0, 0}, .direction = Vector3d::UnitX()});
-  scene.grippers[0].frame.emplace();
-  scene.grippers[1].frame = {.d1 = std::nullopt, .roll = pi};
-  return scene;
-}
-
-Solution twisted_solution() {
-  Solution solution;
-  solution.shape = {{0, 1}, (Eigen::Matrix3Xd(3, 2) << 0, 0.8, 0, 0, 0, 0).finished()};
-  solution.energy = {.bending = 1, .twisting = 2.5, .gravity = -0.25};
-  solution.grippers = {{.force = {0, 1, 0}, .torque = {-1.5, 7, 8}},
-                       {.force = {0, 1, 0}, .torque = {1.5, 9, 10}}};
-  solution.twists = {{.begin = 0, .end = 0.4, .angle = 3, .torque = 1.5},
-                     {.begin = 0.4, .end = 1, .angle = -0.5, .torque = -0.25}};
-  return solution;
-}
-
-TEST(TwistOutput, TextHasARowForEachPart) {
-  const std::string text = dlo::cli::solution_text(twisted_solution(), twisted_by_two_grippers());
-  EXPECT_TRUE(
-      says(text, {"energy\n  bending   1 J\n  twisting  2.5 J\n  gravity   -0.25 J\n  total",
-                  "\ntwist parts\n  from [m]  to [m]  angle [rad]  torque [Nm]\n"
-                  "         0     0.4            3          1.5\n"
-                  "       0.4       1         -0.5        -0.25\n"}));
-}
 
 /// The command on the scene that comes with it.
 class TwistCommand : public dlo::test::Command {
