@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-namespace dlo::test {
+namespace dlo::inline test {
 
 /// Whether a text has each of these parts; if not, which it lacks.
 inline testing::AssertionResult says(const std::string& text,
@@ -41,4 +41,4 @@ std::string error_of(const Work& work) {
   return "no error";
 }
 
-}  // namespace dlo::test
+}  // namespace dlo::inline test

@@ -7,7 +7,7 @@
 #include "command_fixture.hpp"
 #include "scene_text.hpp"
 
-namespace dlo::test {
+namespace dlo::inline test {
 
 /// Fixture for the command calibrate: rods and their observed shapes.
 class CalibrateCommand : public Command {
@@ -25,4 +25,4 @@ class CalibrateCommand : public Command {
   }
 };
 
-}  // namespace dlo::test
+}  // namespace dlo::inline test

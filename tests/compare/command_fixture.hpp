@@ -21,7 +21,7 @@
 #include "run_command.hpp"
 #include "shell_words.hpp"
 
-namespace dlo::test {
+namespace dlo::inline test {
 
 /// Result of a command.
 struct Outcome {
@@ -151,4 +151,4 @@ class Command : public Folder {
   static std::string steel() { return std::string(DLO_DATA) + "/scenes/spring_steel_175.toml"; }
 };
 
-}  // namespace dlo::test
+}  // namespace dlo::inline test

@@ -10,7 +10,7 @@
 #include <utility>
 #include <vector>
 
-namespace dlo::test {
+namespace dlo::inline test {
 
 using CsvRow = std::vector<std::string>;
 
@@ -72,4 +72,4 @@ inline std::string in_first_row(const std::string& text, const std::string& colu
   return rows.at(1).at(static_cast<std::size_t>(name - rows.at(0).begin()));
 }
 
-}  // namespace dlo::test
+}  // namespace dlo::inline test

@@ -10,7 +10,7 @@
 #include <string>
 #include <vector>
 
-namespace dlo::test {
+namespace dlo::inline test {
 
 /// Fixture with a private folder, which is removed with it.
 class Folder : public testing::Test {
@@ -48,4 +48,4 @@ class Folder : public testing::Test {
       std::filesystem::temp_directory_path() / ("dlo_test_" + std::to_string(::getpid()));
 };
 
-}  // namespace dlo::test
+}  // namespace dlo::inline test

@@ -7,7 +7,7 @@
 
 #include "command_fixture.hpp"
 
-namespace dlo::test {
+namespace dlo::inline test {
 
 /// Fixture that runs lines of bash in a private folder, for tests of the command's output.
 class Output : public Command {
@@ -37,4 +37,4 @@ class Output : public Command {
   }
 };
 
-}  // namespace dlo::test
+}  // namespace dlo::inline test

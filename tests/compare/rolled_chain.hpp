@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
-namespace dlo::test {
+namespace dlo::inline test {
 
 /// Moment of a joint divided by its spring constant, and its derivative by the angle.
 struct JointMoment {
@@ -69,4 +69,4 @@ Eigen::Matrix3Xd chain_at_rest(const Eigen::VectorXd& segments, const Eigen::Vec
   return points;
 }
 
-}  // namespace dlo::test
+}  // namespace dlo::inline test

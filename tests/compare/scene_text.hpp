@@ -6,7 +6,7 @@
 #include "dlo/compare/error.hpp"
 #include "dlo/compare/scene_file.hpp"
 
-namespace dlo::test {
+namespace dlo::inline test {
 
 /// Returns a gripper at the beginning of the rod and the origin.
 /// @param held  a direction or `hold = "pin"`
@@ -26,4 +26,4 @@ inline std::string scene_error(const std::string& text) {
   return error_of<compare::InputError>([&] { return compare::parse_scene(text, "my.toml"); });
 }
 
-}  // namespace dlo::test
+}  // namespace dlo::inline test

@@ -5,7 +5,7 @@
 
 #include "dlo/compare/scene.hpp"
 
-namespace dlo::test {
+namespace dlo::inline test {
 
 /// Returns a rod of 1 m under its weight along -y, clamped at the origin.
 inline compare::Scene heavy_scene(double gamma, double degrees) {
@@ -32,4 +32,4 @@ inline compare::Scene two_clamps(double gamma, const Eigen::Vector3d& end,
   return scene;
 }
 
-}  // namespace dlo::test
+}  // namespace dlo::inline test

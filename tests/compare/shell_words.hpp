@@ -7,7 +7,7 @@
 
 #include "foreign/child_process.hpp"
 
-namespace dlo::test {
+namespace dlo::inline test {
 
 /// Returns the words into which sh(1) splits a line by blanks, quotes and backslashes; nothing if
 /// the line has anything else that a shell acts on, such as pipes, variables and patterns.
@@ -19,4 +19,4 @@ inline std::optional<std::vector<std::string>> shell_words(const std::string& li
   return compare::command_words(line, "shell_words");
 }
 
-}  // namespace dlo::test
+}  // namespace dlo::inline test

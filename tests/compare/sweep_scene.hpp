@@ -6,7 +6,7 @@
 #include "batch/sweep.hpp"
 #include "scene_text.hpp"
 
-namespace dlo::test {
+namespace dlo::inline test {
 
 inline const std::string sweep_scene = "name = \"swept\"\n" + steel_rod + level_clamp;
 
@@ -19,4 +19,4 @@ inline compare::Sweep sweep(const std::vector<std::string>& vary,
   return {compare::SceneTemplate(scene, "swept.toml"), compare::Grid(axes), model};
 }
 
-}  // namespace dlo::test
+}  // namespace dlo::inline test

@@ -20,9 +20,6 @@
 namespace dlo::energy_model {
 namespace {
 
-using test::heavy_cantilever;
-using test::two_clamps;
-
 const Action no_least;
 
 TEST(Imbalance, IsTheSumOfForcesAndOfMomentsAboutTheFirstPoint) {

@@ -20,10 +20,6 @@
 namespace dlo::energy_model {
 namespace {
 
-using test::heavy_cantilever;
-using test::over_floor;
-using test::random_touching_problem;
-
 /// A rod held above a floor, worked out from its shear force alone. Where it lies it is straight
 /// and its weight is carried on the spot; up to the touch-down at s = b it hangs free:
 ///     theta'' = (w (b - s) - R) cos(theta),  theta = theta' = 0 at s = b,

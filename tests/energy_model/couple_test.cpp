@@ -22,9 +22,6 @@ namespace dlo::energy_model {
 namespace {
 
 using std::numbers::pi;
-using test::heavy_cantilever;
-using test::RandomNumbers;
-using test::two_clamps;
 
 Problem with_couple(Problem problem, double at, double torque) {
   problem.loads.push_back({at, {0, 0, 0}, {0, 0, torque}});

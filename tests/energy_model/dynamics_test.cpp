@@ -22,7 +22,6 @@ namespace {
 
 using Eigen::Vector3d;
 using std::numbers::pi;
-using test::equal_times;
 
 constexpr double first_beta = 1.8751040687119612;
 /// Period of a cantilever with EI = l = rho A = 1.

@@ -12,8 +12,6 @@
 namespace dlo::energy_model {
 namespace {
 
-using test::heavy_cantilever;
-
 TEST(Energy, AgreesWithExactAtEveryClampAngle) {
   for (const double gamma : {0.1, 1.0, 10.0, 100.0}) {
     for (int degrees = -90; degrees <= 90; degrees += 15) {

@@ -11,7 +11,7 @@
 #include "dlo/energy_model/equilibrium.hpp"
 #include "dlo/energy_model/problem.hpp"
 
-namespace dlo::test {
+namespace dlo::inline test {
 
 /// Violations of the conditions of equilibrium by a shape, from its samples and reactions alone.
 struct BalanceDefects {
@@ -234,4 +234,4 @@ inline BalanceDefects balance_of(const energy_model::Problem& problem,
   return defects;
 }
 
-}  // namespace dlo::test
+}  // namespace dlo::inline test

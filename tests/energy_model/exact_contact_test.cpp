@@ -24,9 +24,6 @@
 namespace dlo::energy_model {
 namespace {
 
-using test::heavy_cantilever;
-using test::over_floor;
-
 /// Numbers of shapes with contact that were confirmed from themselves, by kind.
 struct Confirmed {
   bool may_be_near_singular = false;

@@ -15,9 +15,6 @@
 namespace dlo::energy_model {
 namespace {
 
-using test::heavy_cantilever;
-using test::two_clamps;
-
 TEST(MultipleShooting, FindsWhatTheScanOfOneClampFinds) {
   // A clamp in the middle makes two cantilevers of the rod, which the scan takes one by one.
   const std::vector<double> s = equal_arc_lengths(0.5, 21);

@@ -23,8 +23,6 @@
 namespace dlo::energy_model {
 namespace {
 
-using test::heavy_cantilever;
-
 /// Returns a rod of unit length and bending stiffness, clamped at the origin in the frame of the
 /// axes.
 Problem curved_rod(const Eigen::Vector3d& strain, double torsion = 0.8) {

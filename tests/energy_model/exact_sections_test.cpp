@@ -15,7 +15,6 @@ namespace dlo::energy_model {
 namespace {
 
 using std::numbers::pi;
-using test::heavy_cantilever;
 
 TEST(ExactSections, AColumnOfTwoStiffnessesBucklesUnderItsLoad) {
   // Linear theory: tan(k a) tan(q b) = q / k, k = P^(1/2), q = (P / stiffness)^(1/2).

@@ -17,7 +17,6 @@ namespace dlo::energy_model {
 namespace {
 
 using std::numbers::pi;
-using test::heavy_cantilever;
 
 bool says(const Equilibrium& equilibrium, const std::string& words) {
   return equilibrium.message.find(words) != std::string::npos;

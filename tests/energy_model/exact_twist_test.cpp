@@ -29,7 +29,6 @@ namespace dlo::energy_model {
 namespace {
 
 using std::numbers::pi;
-using test::rolled_clamps;
 
 /// The span of a rod between clamps that hold frames.
 RodSpan span_of(const Problem& problem) { return cut_at_clamps(problem).front(); }

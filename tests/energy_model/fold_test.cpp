@@ -15,7 +15,6 @@
 namespace dlo::energy_model {
 namespace {
 
-using test::heavy_cantilever;
 using Real = long double;
 
 /// Returns a rod that is clamped along x and stiff out of the plane of its weight.

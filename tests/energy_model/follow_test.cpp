@@ -13,8 +13,6 @@
 namespace dlo::energy_model {
 namespace {
 
-using test::heavy_cantilever;
-
 TEST(WarmStart, AfterASmallTurnOfTheGripperTakesAFewEvaluations) {
   for (const double gamma : {0.2, 10.0, 100.0}) {
     const Equilibrium before = solve_energy(heavy_cantilever(gamma, 0));

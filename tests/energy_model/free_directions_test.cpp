@@ -8,8 +8,6 @@
 namespace dlo::energy_model {
 namespace {
 
-using test::with_eigenvalues;
-
 /// Returns the smallest eigenvalue of a Hessian without constraints.
 double smallest_without_constraints(const Eigen::MatrixXd& hessian) {
   ReducedHessian free;

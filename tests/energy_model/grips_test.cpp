@@ -17,9 +17,6 @@
 namespace dlo::energy_model {
 namespace {
 
-using test::heavy_cantilever;
-using test::two_clamps;
-
 TEST(Grips, BalanceWeightAndLoadsInEveryArrangement) {
   const double gamma = 6;
   std::vector<Problem> problems;

@@ -11,8 +11,6 @@
 namespace dlo::energy_model {
 namespace {
 
-using test::heavy_cantilever;
-
 bool always_stop() { return true; }
 bool never_stop() { return false; }
 

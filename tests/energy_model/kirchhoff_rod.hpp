@@ -9,7 +9,7 @@
 #include "runge_kutta.hpp"
 #include "solved.hpp"
 
-namespace dlo::test {
+namespace dlo::inline test {
 
 /// Returns the matrix with hat(u) v = u x v.
 inline Eigen::Matrix3d hat_of(const Eigen::Vector3d& u) {
@@ -79,4 +79,4 @@ inline RodEnd carried_along(const energy_model::Problem& problem,
   return end;
 }
 
-}  // namespace dlo::test
+}  // namespace dlo::inline test

@@ -17,11 +17,6 @@
 namespace dlo::energy_model {
 namespace {
 
-using test::heavy_cantilever;
-using test::RandomNumbers;
-using test::RandomSpace;
-using test::two_clamps;
-
 Problem with_weight_as_load(Problem problem) {
   problem.line_loads = {{0, 1, problem.weight_per_length, problem.weight_per_length}};
   problem.weight_per_length.setZero();

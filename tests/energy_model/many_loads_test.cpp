@@ -15,8 +15,6 @@
 namespace dlo::energy_model {
 namespace {
 
-using test::heavy_cantilever;
-
 /// The weight of a cantilever of Gamma = 12 in as many loads, each in the middle of its part.
 Problem loaded(int count) {
   Problem problem = heavy_cantilever(0, 10);

@@ -20,7 +20,6 @@ namespace {
 
 using Eigen::Matrix3d;
 using Eigen::Vector3d;
-using test::point_at;
 
 Problem clamped_rod() {
   Problem problem;

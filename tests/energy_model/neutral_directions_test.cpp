@@ -17,9 +17,6 @@
 namespace dlo::energy_model {
 namespace {
 
-using test::heavy_cantilever;
-using test::two_clamps;
-
 using std::numbers::pi;
 
 /// Short of self-buckling, at Gamma = 7.8373474, by this share and 6e-8.

@@ -20,7 +20,6 @@ namespace dlo::energy_model {
 namespace {
 
 using obstacle::Body;
-using test::heavy_cantilever;
 
 double angle_between(const Eigen::Vector3d& a, const Eigen::Vector3d& b) {
   return std::atan2(a.cross(b).norm(), a.dot(b));

@@ -10,7 +10,7 @@
 #include "dlo/energy_model/equilibrium.hpp"
 #include "dlo/energy_model/problem.hpp"
 
-namespace dlo::test {
+namespace dlo::inline test {
 
 /// Similarity transformation of a rod: factors of its lengths and stiffnesses, a rotation and a
 /// translation.
@@ -79,4 +79,4 @@ struct Placement {
   }
 };
 
-}  // namespace dlo::test
+}  // namespace dlo::inline test

@@ -9,7 +9,7 @@
 #include "dlo/energy_model/energy.hpp"
 #include "dlo/energy_model/polygon.hpp"
 
-namespace dlo::test {
+namespace dlo::inline test {
 
 /// Elastic polygon of a round rod whose ends two clamps hold with their frames, with stiff springs
 /// as obstacles. It shares neither unknowns nor contacts with the energy model. Clamps hold the
@@ -61,4 +61,4 @@ struct PolygonOfRod {
   }
 };
 
-}  // namespace dlo::test
+}  // namespace dlo::inline test

@@ -17,7 +17,7 @@ namespace {
 constexpr double stiff = 4e6;  // 16 (l/d)^2 of a rod 500 diameters long, over EI/l^2
 
 /// A rod of unit length and rigidity under its weight along -y, both ends clamped `span` apart.
-PolygonProblem two_clamps(JointLaw law, Eigen::Index points, double span, double gamma) {
+PolygonProblem between_clamps(JointLaw law, Eigen::Index points, double span, double gamma) {
   PolygonProblem problem;
   const double L = 1.0 / static_cast<double>(points - 2);
   problem.rest_lengths = Eigen::VectorXd::Constant(points - 1, L);
@@ -54,7 +54,7 @@ const char* polygon_law_name(JointLaw law) {
 class PolygonOfEveryLaw : public testing::TestWithParam<JointLaw> {};
 
 TEST_P(PolygonOfEveryLaw, GradientIsTheDifferenceOfTheEnergy) {
-  PolygonProblem problem = two_clamps(GetParam(), 9, 0.8, 5);
+  PolygonProblem problem = between_clamps(GetParam(), 9, 0.8, 5);
   problem.stretch_stiffness = 50;
   problem.rest_lengths[3] *= 1.3;
   problem.obstacles = {{obstacle::Body::half_space({0, -0.1, 0}, Eigen::Vector3d(0.6, 0.8, 0)), 30},
@@ -83,7 +83,7 @@ TEST_P(PolygonOfEveryLaw, GradientIsTheDifferenceOfTheEnergy) {
 TEST_P(PolygonOfEveryLaw, RestsInFewStepsAndBalancesItsForces) {
   for (const double gamma : {0.0, 1.0, 100.0, 1000.0}) {
     for (const Eigen::Index points : {8, 33, 200}) {
-      const PolygonProblem problem = two_clamps(GetParam(), points, 0.8, gamma);
+      const PolygonProblem problem = between_clamps(GetParam(), points, 0.8, gamma);
       const PolygonResult result = solve_polygon(problem, arch(problem, 0.8, 0));
       ASSERT_TRUE(succeeded(result.status)) << gamma << ", " << points << ": " << result.message;
       // Where only the cubic law acts the Hessian fades towards rest, and Newton is slow.
@@ -136,7 +136,7 @@ TEST(Polygon, IsTheRigidChainWhenItHasOneClamp) {
 
 TEST(Polygon, LeavesASaddle) {
   // Straight between two grips that press it together: Euler's column.
-  PolygonProblem problem = two_clamps(JointLaw::hooke, 42, 0.95, 0);
+  PolygonProblem problem = between_clamps(JointLaw::hooke, 42, 0.95, 0);
   Eigen::Matrix3Xd start(3, 42);
   for (Eigen::Index i = 0; i < 42; ++i) {
     start.col(i) = Eigen::Vector3d(0.95 * static_cast<double>(i) / 41, 0, 0);
@@ -171,7 +171,7 @@ double smallest_eigenvalue(const Eigen::MatrixXd& hessian) {
 // Crumpled polygons in a ball and a floor: all second derivatives have any sign, those that stiffen
 // none below zero. Straight and pulled, clear of obstacles, both are the same.
 TEST_P(PolygonOfEveryLaw, StiffeningSecondDerivativesAreNeverNegative) {
-  PolygonProblem problem = two_clamps(GetParam(), 12, 0.8, 5);
+  PolygonProblem problem = between_clamps(GetParam(), 12, 0.8, 5);
   problem.stretch_stiffness = 500;
   problem.obstacles = {
       {obstacle::Body::half_space({0, -0.1, 0}, Eigen::Vector3d(0.6, 0.8, 0)), 300},
@@ -201,7 +201,7 @@ TEST_P(PolygonOfEveryLaw, StiffeningSecondDerivativesAreNeverNegative) {
 // A rope that is compressed to half of its length above a floor: with damping as the only remedy
 // for negative curvature it took 511 evaluations.
 TEST(Polygon, ASoftRopeThatIsCompressedComesToRestInTensOfSteps) {
-  PolygonProblem problem = two_clamps(JointLaw::hooke, 80, 0.5, 2000);
+  PolygonProblem problem = between_clamps(JointLaw::hooke, 80, 0.5, 2000);
   problem.obstacles = {{obstacle::Body::half_space({0, -0.1, 0}, Eigen::Vector3d::UnitY()), stiff}};
   Eigen::Matrix3Xd start = arch(problem, 0.5, 0.3);
   start.bottomRows(2) *= 0.05;
@@ -210,7 +210,7 @@ TEST(Polygon, ASoftRopeThatIsCompressedComesToRestInTensOfSteps) {
 }
 
 TEST(Polygon, ObstaclePushesBackWithItsStiffness) {
-  PolygonProblem problem = two_clamps(JointLaw::hooke, 33, 0.9, 20);
+  PolygonProblem problem = between_clamps(JointLaw::hooke, 33, 0.9, 20);
   const PolygonResult free = test::usable(solve_polygon(problem, arch(problem, 0.9, 0)));
   const double sag = free.points.row(1).minCoeff();
   problem.obstacles = {
@@ -229,7 +229,7 @@ TEST(Polygon, ObstaclePushesBackWithItsStiffness) {
 TEST(Polygon, SegmentsOfOwnStiffnessSinkEqually) {
   constexpr double weight = 3;
   constexpr double floor = 60;
-  PolygonProblem problem = two_clamps(JointLaw::hooke, 7, 1, 0);
+  PolygonProblem problem = between_clamps(JointLaw::hooke, 7, 1, 0);
   const Eigen::Index n = problem.rest_lengths.size();
   problem.rest_lengths.segment(1, n - 2) << 0.1, 0.25, 0.05, 0.2;
   const double depth = weight / floor;
@@ -252,13 +252,13 @@ TEST(Polygon, SegmentsOfOwnStiffnessSinkEqually) {
 }
 
 TEST(Polygon, StoppedEarlyIsAFailure) {
-  const PolygonProblem problem = two_clamps(JointLaw::hooke, 20, 0.8, 5);
+  const PolygonProblem problem = between_clamps(JointLaw::hooke, 20, 0.8, 5);
   EXPECT_EQ(solve_polygon(problem, arch(problem, 0.8, 0), {.max_evaluations = 2}).status,
             SolveStatus::evaluation_limit);
 }
 
 TEST(Polygon, StopsAtItsTimeLimit) {
-  const PolygonProblem problem = two_clamps(JointLaw::hooke, 20, 0.8, 5);
+  const PolygonProblem problem = between_clamps(JointLaw::hooke, 20, 0.8, 5);
   const PolygonResult late = solve_polygon(problem, arch(problem, 0.8, 0), {.time_limit = 1e-9});
   EXPECT_EQ(late.status, SolveStatus::time_limit);
   EXPECT_THROW((void)solve_polygon(problem, arch(problem, 0.8, 0), {.time_limit = 0}),
@@ -268,7 +268,7 @@ TEST(Polygon, StopsAtItsTimeLimit) {
 // A short step in a stiff segment is a large force, so results are judged by forces too.
 TEST(Polygon, AToleranceOfLengthsLeavesNoForce) {
   for (const double gamma : {17.0, 19.0, 21.0, 23.0}) {
-    PolygonProblem problem = two_clamps(JointLaw::hooke, 17, 0.8, gamma);
+    PolygonProblem problem = between_clamps(JointLaw::hooke, 17, 0.8, gamma);
     problem.stretch_stiffness = 4e8;
     const PolygonResult result =
         test::usable(solve_polygon(problem, arch(problem, 0.8, 0), {.tolerance = 5e-8}));
@@ -279,7 +279,7 @@ TEST(Polygon, AToleranceOfLengthsLeavesNoForce) {
 
 TEST(Polygon, ReturnsTheResidualOfThePointsThatItReturns) {
   for (const int most : {2, 5, 10, 20000}) {
-    const PolygonProblem problem = two_clamps(JointLaw::hooke, 20, 0.8, 5);
+    const PolygonProblem problem = between_clamps(JointLaw::hooke, 20, 0.8, 5);
     const PolygonResult result =
         solve_polygon(problem, arch(problem, 0.8, 0.2), {.max_evaluations = most});
     Eigen::Matrix3Xd gradient(3, 20);
@@ -295,7 +295,7 @@ TEST(Polygon, ReturnsTheResidualOfThePointsThatItReturns) {
 }
 
 TEST(Polygon, RefusesBadProblems) {
-  const PolygonProblem good = two_clamps(JointLaw::hooke, 10, 0.8, 5);
+  const PolygonProblem good = between_clamps(JointLaw::hooke, 10, 0.8, 5);
   const Eigen::Matrix3Xd start = arch(good, 0.8, 0);
   const auto refused = [&](const auto& spoil) {
     PolygonProblem problem = good;

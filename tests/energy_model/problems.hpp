@@ -12,7 +12,7 @@
 #include "dlo/energy_model/exact.hpp"
 #include "dlo/energy_model/problem.hpp"
 
-namespace dlo::test {
+namespace dlo::inline test {
 
 /// Both solvers with their default options.
 inline constexpr std::array<energy_model::Equilibrium (*)(const energy_model::Problem&), 2>
@@ -60,4 +60,4 @@ inline nlohmann::json reference_values() {
   return nlohmann::json::parse(stream);
 }
 
-}  // namespace dlo::test
+}  // namespace dlo::inline test

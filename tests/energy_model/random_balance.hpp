@@ -15,7 +15,7 @@
 #include "random_scenes.hpp"
 #include "solve/polygon_solution.hpp"
 
-namespace dlo::test {
+namespace dlo::inline test {
 
 /// Largest imbalance of the equilibria of one model.
 struct LargestImbalance {
@@ -177,4 +177,4 @@ inline int print_imbalances(std::uint64_t first, std::uint64_t scenes, double ti
   return refused;
 }
 
-}  // namespace dlo::test
+}  // namespace dlo::inline test

@@ -10,7 +10,7 @@
 #include "dlo/energy_model/energy.hpp"
 #include "problems.hpp"
 
-namespace dlo::test {
+namespace dlo::inline test {
 
 /// Returns a problem with one to three grips above or next to a half-space, drawn by a seed.
 inline energy_model::Problem random_touching_problem(unsigned seed, bool space,
@@ -173,4 +173,4 @@ inline std::optional<energy_model::Problem> random_framed_problem(unsigned seed,
   return problem;
 }
 
-}  // namespace dlo::test
+}  // namespace dlo::inline test

@@ -14,7 +14,7 @@
 #include "equilibrium_balance.hpp"
 #include "random_problems.hpp"
 
-namespace dlo::test {
+namespace dlo::inline test {
 
 /// Comparison of two solutions of one problem.
 enum class Agreement {
@@ -164,4 +164,4 @@ inline std::string scene_text(const energy_model::Problem& problem, const std::s
   return text.str();
 }
 
-}  // namespace dlo::test
+}  // namespace dlo::inline test

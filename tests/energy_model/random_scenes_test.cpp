@@ -11,9 +11,6 @@
 namespace dlo::energy_model {
 namespace {
 
-using test::Agreement;
-using test::RandomSpace;
-
 class RandomScenes : public testing::TestWithParam<RandomSpace> {};
 
 TEST_P(RandomScenes, CompareTheEnergyModelWithMultipleShooting) {

@@ -15,8 +15,6 @@ namespace dlo::energy_model {
 namespace {
 
 using nlohmann::json;
-using test::heavy_cantilever;
-using test::reference_values;
 
 constexpr double tolerance = 1e-8;  // of l, and of EI/l for energies of order one
 

@@ -23,7 +23,6 @@ namespace dlo::energy_model {
 namespace {
 
 using Eigen::Vector3d;
-using test::equal_times;
 
 const obstacle::Body low_floor = obstacle::Body::half_space({0, -0.2, 0}, {0, 1, 0});
 

@@ -2,7 +2,7 @@
 
 #include "problems.hpp"
 
-namespace dlo::test {
+namespace dlo::inline test {
 
 /// Returns a horizontal rod of unit length and stiffness whose clamps hold its frame, at the
 /// distance `span`, with a roll of the second clamp.
@@ -26,4 +26,4 @@ inline energy_model::Problem rolled_clamps(const Eigen::Vector3d& end,
   return problem;
 }
 
-}  // namespace dlo::test
+}  // namespace dlo::inline test

@@ -15,9 +15,6 @@
 namespace dlo::energy_model {
 namespace {
 
-using test::heavy_cantilever;
-using test::two_clamps;
-
 int found_first(const EnergySearch& search) {
   int sum = 0;
   for (const SearchStrategy& strategy : search.strategies) sum += strategy.found_first;

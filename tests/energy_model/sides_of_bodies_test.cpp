@@ -27,7 +27,6 @@ namespace dlo::energy_model {
 namespace {
 
 using obstacle::Body;
-using test::heavy_cantilever;
 
 using Corners = std::vector<Eigen::Vector3d>;
 

@@ -20,8 +20,6 @@
 namespace dlo::energy_model {
 namespace {
 
-using test::heavy_cantilever;
-
 struct YieldingScene {
   std::string name;
   Problem problem;

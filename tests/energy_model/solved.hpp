@@ -10,7 +10,7 @@
 #include "dlo/energy_model/equilibrium.hpp"
 #include "dlo/energy_model/status.hpp"
 
-namespace dlo::test {
+namespace dlo::inline test {
 
 /// Returns a solver's result, which must have converged: otherwise its message ends the test.
 template <typename Result>
@@ -60,4 +60,4 @@ inline Eigen::Vector3d carried(const energy_model::Samples& samples, Eigen::Inde
   return reflected(reflected(director, chord), samples.tangents.col(i + 1) - t);
 }
 
-}  // namespace dlo::test
+}  // namespace dlo::inline test

@@ -14,7 +14,7 @@
 #include "dlo/energy_model/energy.hpp"
 #include "dlo/energy_model/problem.hpp"
 
-namespace dlo::test {
+namespace dlo::inline test {
 
 /// Stable states of planar rods of unit length and stiffness, found by brute force: polygons are
 /// relaxed from many random shapes, and each is the initial guess of one refinement. No initial
@@ -209,4 +209,4 @@ class StableStates {
   std::mt19937 random_;
 };
 
-}  // namespace dlo::test
+}  // namespace dlo::inline test

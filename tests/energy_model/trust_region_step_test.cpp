@@ -11,8 +11,6 @@
 namespace dlo::energy_model {
 namespace {
 
-using test::with_eigenvalues;
-
 /// Moré and Sorensen: (H + mu) z = b with H + mu positive semidefinite and |z| = length, or mu = 0
 /// and z shorter, is the minimum of z.H z / 2 - b.z within this length.
 TEST(TrustRegionStep, IsTheLowestWithinTheRadius) {

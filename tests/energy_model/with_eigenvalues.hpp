@@ -3,7 +3,7 @@
 #include <Eigen/Core>
 #include <Eigen/QR>
 
-namespace dlo::test {
+namespace dlo::inline test {
 
 /// Returns a symmetric matrix with these eigenvalues.
 inline Eigen::MatrixXd with_eigenvalues(const Eigen::VectorXd& eigenvalues) {
@@ -13,4 +13,4 @@ inline Eigen::MatrixXd with_eigenvalues(const Eigen::VectorXd& eigenvalues) {
   return Q * eigenvalues.asDiagonal() * Q.transpose();
 }
 
-}  // namespace dlo::test
+}  // namespace dlo::inline test

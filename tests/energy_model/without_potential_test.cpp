@@ -28,9 +28,6 @@ namespace dlo::energy_model {
 namespace {
 
 using std::numbers::pi;
-using test::heavy_cantilever;
-using test::RandomNumbers;
-using test::two_clamps;
 
 /// A rod of unit length and stiffnesses about d1, d2 and t, as this file integrates it.
 struct TipRod {

@@ -14,10 +14,6 @@
 namespace dlo::force_model {
 namespace {
 
-using test::Space;
-using test::Variant;
-using test::Walls;
-
 std::vector<BatchRod> random_rods(std::size_t count, Eigen::Index points, const Variant& variant) {
   std::vector<BatchRod> rods;
   for (unsigned seed = 0; seed < count; ++seed) {

@@ -14,9 +14,6 @@ namespace dlo::force_model {
 namespace {
 
 using std::numbers::pi;
-using test::difference_forces;
-using test::net_torque;
-using test::random_polygon;
 
 Eigen::Matrix3Xd forces_of(const Eigen::Matrix3Xd& points, const Eigen::VectorXd& rest,
                            const Bending& bending) {

@@ -9,10 +9,6 @@
 namespace dlo::force_model {
 namespace {
 
-using test::difference_forces;
-using test::net_torque;
-using test::random_polygon;
-
 constexpr double c_c = 3.0;
 
 Eigen::Matrix3Xd forces_of(const Eigen::Matrix3Xd& points, const Eigen::VectorXd& rest) {

@@ -20,7 +20,6 @@ namespace dlo::force_model {
 namespace {
 
 using std::numbers::pi;
-using test::SteelRod;
 
 StepOptions implicit_options() { return {.policy = policy(Stepper::implicit)}; }
 

@@ -7,7 +7,7 @@
 #include "dlo/force_model/tangent_stiffness.hpp"
 #include "rods.hpp"
 
-namespace dlo::test {
+namespace dlo::inline test {
 
 /// A nearly straight rod of few points that is released under a load so small that it stays linear:
 /// each mode is a damped oscillator, whose way is known.
@@ -69,4 +69,4 @@ struct Oscillation {
   }
 };
 
-}  // namespace dlo::test
+}  // namespace dlo::inline test

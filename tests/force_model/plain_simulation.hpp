@@ -10,7 +10,7 @@
 #include "dlo/force_model/step_size.hpp"
 #include "dlo/force_model/stepper.hpp"
 
-namespace dlo::test {
+namespace dlo::inline test {
 
 /// Steps written with total_forces and Eigen, as the formulas stand in the paper: what the kernel
 /// has to agree with and what its speed is compared with.
@@ -137,4 +137,4 @@ class PlainSimulation {
   bool block_open_ = false;
 };
 
-}  // namespace dlo::test
+}  // namespace dlo::inline test

@@ -3,7 +3,7 @@
 #include <Eigen/Geometry>
 #include <random>
 
-namespace dlo::test {
+namespace dlo::inline test {
 
 /// Returns the points of a random walk in space with moderate angles between its segments, whose
 /// lengths are `length` times 1 - length_spread to 1 + length_spread.
@@ -48,4 +48,4 @@ Eigen::Matrix3Xd difference_forces(const Energy& energy, Eigen::Matrix3Xd points
   return forces;
 }
 
-}  // namespace dlo::test
+}  // namespace dlo::inline test

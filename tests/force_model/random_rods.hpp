@@ -9,7 +9,7 @@
 #include "dlo/force_model/stepper.hpp"
 #include "polygons.hpp"
 
-namespace dlo::test {
+namespace dlo::inline test {
 
 using force_model::BendingLaw;
 using force_model::Grip;
@@ -78,4 +78,4 @@ inline StepOptions options_for(Stepper stepper, const Rod& rod) {
   return options;
 }
 
-}  // namespace dlo::test
+}  // namespace dlo::inline test

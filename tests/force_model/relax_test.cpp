@@ -16,8 +16,6 @@
 namespace dlo::force_model {
 namespace {
 
-using test::SteelRod;
-
 struct Start {
   Rod rod;
   Eigen::Matrix3Xd points;

@@ -9,10 +9,6 @@
 namespace dlo::force_model {
 namespace {
 
-using test::difference_forces;
-using test::random_polygon;
-using test::SteelRod;
-
 TEST(TotalForces, AreTheGradientOfTheEnergyForHooke) {
   SteelRod steel;
   Rod rod = steel.rod({BendingLaw::hooke, steel.EI}, 660);

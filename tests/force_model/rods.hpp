@@ -4,7 +4,7 @@
 
 #include "dlo/force_model/rod.hpp"
 
-namespace dlo::test {
+namespace dlo::inline test {
 
 /// The paper's spring steel rod (Table 5), held at the origin, with points and weights as for
 /// compare::Bookkeeping::consistent.
@@ -41,4 +41,4 @@ struct SteelRod {
   }
 };
 
-}  // namespace dlo::test
+}  // namespace dlo::inline test

@@ -12,8 +12,6 @@
 namespace dlo::force_model {
 namespace {
 
-using test::SteelRod;
-
 Rod steel_rod(double c_c = 660) {
   const SteelRod steel;
   return steel.rod({BendingLaw::hooke, steel.EI}, c_c);

@@ -16,14 +16,6 @@
 namespace dlo::force_model {
 namespace {
 
-using test::length;
-using test::options_for;
-using test::random_points;
-using test::random_rod;
-using test::Space;
-using test::Variant;
-using test::Walls;
-
 /// Steps both and compares positions [l], scalings and movements step by step.
 void expect_agreement(const Rod& rod, const Eigen::Matrix3Xd& start, const StepOptions& options,
                       int steps) {

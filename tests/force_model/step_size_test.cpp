@@ -15,9 +15,6 @@
 namespace dlo::force_model {
 namespace {
 
-using test::random_polygon;
-using test::SteelRod;
-
 /// Minus the derivative of the forces by all points, by central differences.
 Eigen::MatrixXd full_stiffness(const Rod& rod, Eigen::Matrix3Xd points) {
   const Eigen::Index n = points.size();

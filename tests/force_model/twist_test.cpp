@@ -23,9 +23,6 @@ namespace dlo::force_model {
 namespace {
 
 using std::numbers::pi;
-using test::difference_forces;
-using test::random_polygon;
-using test::TwistedRod;
 
 TwistedSpan random_span(Eigen::Index segments) {
   return {.first_segment = 1,

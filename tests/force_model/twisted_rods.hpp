@@ -5,7 +5,7 @@
 
 #include "dlo/force_model/rod.hpp"
 
-namespace dlo::test {
+namespace dlo::inline test {
 
 /// A rod between two clamps that hold the middles of its end segments and the frame, the later one
 /// turned by `turn` about its direction from where d1 would be if the rod were straight.
@@ -56,4 +56,4 @@ struct TwistedRod {
   }
 };
 
-}  // namespace dlo::test
+}  // namespace dlo::inline test

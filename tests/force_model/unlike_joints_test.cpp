@@ -19,16 +19,6 @@
 namespace dlo::force_model {
 namespace {
 
-using test::difference_forces;
-using test::net_torque;
-using test::options_for;
-using test::random_points;
-using test::random_polygon;
-using test::random_rod;
-using test::Space;
-using test::SteelRod;
-using test::Walls;
-
 /// Stiffnesses that differ by up to a factor of three along the rod.
 Eigen::VectorXd unlike(double stiffness, Eigen::Index joints) {
   Eigen::VectorXd result(joints);

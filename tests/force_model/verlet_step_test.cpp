@@ -14,8 +14,6 @@
 namespace dlo::force_model {
 namespace {
 
-using test::SteelRod;
-
 /// The paper's rod with its masses, and steps of a share of the largest stable one.
 struct Swinging {
   SteelRod steel;

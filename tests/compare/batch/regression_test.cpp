@@ -19,10 +19,6 @@
 namespace dlo::compare {
 namespace {
 
-using test::error_of;
-using test::says;
-using test::says_none;
-
 BaselineCase entry(const std::string& scene, double error, int points = 16) {
   BaselineCase result;
   result.scene = scene;

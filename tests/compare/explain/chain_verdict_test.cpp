@@ -23,15 +23,6 @@ namespace {
 
 using Eigen::Matrix3Xd;
 using Eigen::Vector3d;
-using test::arch;
-using test::clamped;
-using test::expect_named;
-using test::hinged_chain;
-using test::judged;
-using test::JudgedShape;
-using test::made;
-using test::right_file;
-using test::says;
 
 /// Returns the lengths of so many equal segments of a metre.
 std::vector<double> equal(int segments) {

@@ -26,14 +26,6 @@ namespace {
 using Eigen::Matrix3d;
 using Eigen::Matrix3Xd;
 using Eigen::Vector3d;
-using test::arch;
-using test::clamped;
-using test::expect_named;
-using test::judged;
-using test::JudgedShape;
-using test::made;
-using test::right_file;
-using test::says;
 
 constexpr double degree = std::numbers::pi / 180;
 

@@ -22,10 +22,6 @@ namespace {
 using Eigen::Matrix3d;
 using Eigen::Matrix3Xd;
 using Eigen::Vector3d;
-using test::clamped;
-using test::made;
-using test::right_file;
-using test::says;
 
 /// A cantilever in the plane, one out of it, and a rod between two grippers.
 Scene scene_of(int kind) {

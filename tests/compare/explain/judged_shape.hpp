@@ -12,7 +12,7 @@
 #include "dlo/compare/reference.hpp"
 #include "dlo/compare/scene_file.hpp"
 
-namespace dlo::test {
+namespace dlo::inline test {
 
 /// Returns a rod of 0.5 kg/m whose clamp points 20 degrees upwards. @param rod  additional keys of
 /// the rod
@@ -86,4 +86,4 @@ inline void expect_named(const std::string& what, const compare::Scene& scene,
   EXPECT_LT(best.rms_m, left_m);
 }
 
-}  // namespace dlo::test
+}  // namespace dlo::inline test

@@ -17,8 +17,6 @@
 namespace dlo::compare {
 namespace {
 
-using test::heavy_scene;
-
 std::vector<Scene> scenes_of(const std::vector<double>& gammas, double degrees, BendingLaw law) {
   std::vector<Scene> scenes;
   for (const double gamma : gammas) {

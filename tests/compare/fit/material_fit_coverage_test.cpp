@@ -17,14 +17,6 @@
 namespace dlo::compare {
 namespace {
 
-using test::correlated_noise;
-using test::exact_shape;
-using test::heavy_scene;
-using test::holds;
-using test::random_pose;
-using test::uneven_arc_lengths;
-using test::with_noise;
-
 /// Statistics of fits to one rod.
 struct Tally {
   int held = 0;         // intervals that hold the truth

@@ -20,15 +20,6 @@
 namespace dlo::compare {
 namespace {
 
-using test::error_of;
-using test::exact_shape;
-using test::heavy_scene;
-using test::holds;
-using test::random_pose;
-using test::says;
-using test::uneven_arc_lengths;
-using test::with_noise;
-
 /// Returns the exact shape at these arc lengths, which the file lacks, with noise.
 MeasuredShape noisy_shape(const Scene& scene, const std::vector<double>& s, std::mt19937& random,
                           double noise = 1e-3) {

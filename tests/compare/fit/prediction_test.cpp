@@ -22,9 +22,6 @@
 namespace dlo::compare {
 namespace {
 
-using test::error_of;
-using test::says;
-
 constexpr double one_degree = std::numbers::pi / 180;
 
 struct Hangings {

@@ -16,7 +16,6 @@
 namespace dlo::compare {
 namespace {
 
-using test::error_of;
 using testing::ElementsAre;
 using testing::HasSubstr;
 using testing::StartsWith;

@@ -14,9 +14,6 @@ namespace dlo::compare {
 namespace {
 
 using nlohmann::ordered_json;
-using test::level_clamp;
-using test::says;
-using test::says_none;
 
 ordered_json document_of(const std::string& text) {
   return scene_document(parse_scene(text, "scene.toml"));

@@ -2,7 +2,7 @@
 
 #include "dlo/compare/error_budget.hpp"
 
-namespace dlo::test {
+namespace dlo::inline test {
 
 /// Returns the sum of the shares of all parts of a budget, which is 1.
 inline double sum_of_shares(const compare::Budget& b) {
@@ -11,4 +11,4 @@ inline double sum_of_shares(const compare::Budget& b) {
          b.interaction.share;
 }
 
-}  // namespace dlo::test
+}  // namespace dlo::inline test

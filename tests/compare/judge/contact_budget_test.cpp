@@ -14,8 +14,6 @@
 namespace dlo::compare {
 namespace {
 
-using test::heavy_scene;
-
 /// A rod that leaves its clamp level at this height over a floor.
 Scene over_a_floor(double gamma, double height) {
   Scene scene = heavy_scene(gamma, 0);

@@ -17,8 +17,6 @@
 namespace dlo::compare {
 namespace {
 
-using test::heavy_scene;
-
 /// Returns the rod without weight.
 Shape straight(const Scene& scene) {
   const std::vector<double> s = equal_arc_lengths(1, 12);

@@ -28,9 +28,6 @@
 namespace dlo::compare {
 namespace {
 
-using test::exact_shape;
-using test::heavy_scene;
-
 // `compare` for the force model's shape and `check` for the file that `solve` writes report the
 // same.
 TEST(ShapeCheck, AgreesWithCompareOnTheSameShape) {

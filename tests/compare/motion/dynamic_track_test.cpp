@@ -16,9 +16,6 @@
 namespace dlo::compare {
 namespace {
 
-using test::error_of;
-using test::says;
-
 TrackOptions frames_at(double rate) {
   TrackOptions options;
   options.rates.frames = rate;

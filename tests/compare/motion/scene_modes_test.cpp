@@ -17,8 +17,6 @@
 namespace dlo::compare {
 namespace {
 
-using test::says;
-
 Scene loaded_aside() {
   Scene scene = test::heavy_scene(6, 20);
   scene.loads.push_back({.at = 0.7, .force = {0, 0, 0.3 * scene.bending_stiffness()}});

@@ -16,7 +16,6 @@ namespace dlo::compare {
 namespace {
 
 using energy_model::ContactKind;
-using test::says;
 
 TrackOptions at_rate(double rate) {
   TrackOptions options;

@@ -13,10 +13,6 @@
 namespace dlo::compare {
 namespace {
 
-using test::error_of;
-using test::heavy_scene;
-using test::says;
-
 TEST(PaperBendingStiffness, IsFormula21OfTheDesignCurvature) {
   const Scene scene = paper_scenes().front();
   EXPECT_DOUBLE_EQ(

@@ -19,9 +19,6 @@
 namespace dlo::compare {
 namespace {
 
-using test::error_of;
-using test::says;
-
 /// A metre of rod, clamped level at arc length 0.
 Scene cantilever(double natural_curvature) {
   Scene scene;

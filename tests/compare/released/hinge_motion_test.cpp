@@ -16,9 +16,6 @@
 namespace dlo::compare {
 namespace {
 
-using test::error_of;
-using test::says;
-
 ReleasedRod released(const std::string& id) {
   const std::string stem = std::string(DLO_DATA) + "/suite/scenes/" + id;
   return {load_scene(stem + ".toml"), load_scene(stem + "_begin.toml")};

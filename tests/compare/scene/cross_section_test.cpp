@@ -20,7 +20,6 @@ namespace dlo::compare {
 namespace {
 
 using std::numbers::pi;
-using test::says;
 
 const std::string flat_clamp = test::level_clamp;
 

@@ -19,9 +19,6 @@ namespace {
 
 using Eigen::Vector3d;
 using std::numbers::pi;
-using test::error_of;
-using test::says;
-using test::says_none;
 
 const std::string rod = R"([rod]
 length = 0.5

@@ -18,8 +18,6 @@
 namespace dlo::compare {
 namespace {
 
-using test::says;
-
 double disc_moment(double diameter) { return std::numbers::pi * std::pow(diameter, 4) / 64; }
 
 TEST(Layers, TubesAboutOneAxisAreAsStiffBondedAsFree) {

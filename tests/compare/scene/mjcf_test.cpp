@@ -22,9 +22,6 @@ namespace dlo::compare {
 namespace {
 
 using std::numbers::pi;
-using test::error_of;
-using test::says;
-using test::says_none;
 
 Scene mjcf_model(const std::string& name) { return load_scene(DLO_DATA "/mujoco/" + name); }
 

@@ -14,10 +14,6 @@
 namespace dlo::compare {
 namespace {
 
-using test::error_of;
-using test::says;
-using test::scene_error;
-
 const std::string held_rod =
     "[rod]\nlength = 1\ndiameter = 0.02\nmaterial = \"silicone\"\n[[gripper]]\nat = 0\n";
 const std::string two_poses =

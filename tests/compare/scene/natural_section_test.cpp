@@ -16,9 +16,6 @@
 namespace dlo::compare {
 namespace {
 
-using test::says;
-using test::scene_error;
-
 const std::string wire_head = R"(gravity = [0, 0, 0]
 [rod]
 length = "240 mm"

@@ -13,8 +13,6 @@
 namespace dlo::compare {
 namespace {
 
-using test::says;
-
 const std::string over_a_rod = "[rod]\nlength = 1\ndiameter = 0.02\nmaterial = \"silicone\"\n" +
                                test::level_clamp + "[[obstacle]]\n";
 

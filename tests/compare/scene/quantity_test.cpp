@@ -13,9 +13,6 @@
 namespace dlo::compare {
 namespace {
 
-using test::error_of;
-using test::says;
-
 std::string message(const std::string& text, Dimension dimension) {
   return error_of<InputError>([&] { return parse_quantity(text, dimension); });
 }

@@ -27,9 +27,6 @@
 namespace dlo::compare {
 namespace {
 
-using test::error_of;
-using test::says;
-
 constexpr double shaft_length = 0.24;
 
 /// A shaft of 0.2 m, an arc of 80 1/m and one of 40 1/m, 0.02 m each.

@@ -20,10 +20,6 @@
 namespace dlo::compare {
 namespace {
 
-using test::first_pin;
-using test::says;
-using test::scene_error;
-
 const std::string by_stiffness = R"([rod]
 length = "2 m"
 bending_stiffness = "1.2e-3 N m^2"

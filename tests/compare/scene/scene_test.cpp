@@ -10,10 +10,6 @@
 namespace dlo::compare {
 namespace {
 
-using test::says;
-using test::says_none;
-using test::scene_error;
-
 const std::string good_rod = test::steel_rod;
 const std::string good_gripper = R"([[gripper]]
 at = 0

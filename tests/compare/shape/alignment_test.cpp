@@ -15,12 +15,6 @@
 namespace dlo::compare {
 namespace {
 
-using test::exact_shape;
-using test::heavy_scene;
-using test::random_pose;
-using test::uneven_arc_lengths;
-using test::with_noise;
-
 const AlignOptions any_motion{.pose = PoseFreedom::rigid, .weights = PointWeights::equal};
 
 double largest_distance(const Eigen::Matrix3Xd& a, const Eigen::Matrix3Xd& b) {

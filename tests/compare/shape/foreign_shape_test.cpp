@@ -16,10 +16,6 @@
 namespace dlo::compare {
 namespace {
 
-using test::error_of;
-using test::says;
-using test::says_none;
-
 const std::string corpus = DLO_FUZZ_CORPUS "/shape/";
 
 void expect_file_points(const std::string& name, double rounding = 0, double unit = 1) {

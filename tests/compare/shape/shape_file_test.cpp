@@ -11,10 +11,6 @@
 namespace dlo::compare {
 namespace {
 
-using test::error_of;
-using test::says;
-using test::says_none;
-
 Eigen::Matrix3Xd expected_points() {
   Eigen::Matrix3Xd points(3, 3);
   points << 0, 0.1, 0.2, 0, -0.01, -0.03, 0, 0, 0.5;

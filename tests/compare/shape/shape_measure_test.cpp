@@ -20,9 +20,6 @@
 namespace dlo::compare {
 namespace {
 
-using test::heavy_scene;
-using test::says;
-
 /// A random rod and its right shape.
 struct Right {
   Scene scene;

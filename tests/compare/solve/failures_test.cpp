@@ -15,9 +15,6 @@
 namespace dlo {
 namespace {
 
-using test::says;
-using test::says_none;
-
 /// Required result of a run.
 enum class Demand {
   end,       ///< an equilibrium, or one line of an error with status 2 or 3

@@ -13,7 +13,6 @@ namespace dlo::compare {
 namespace {
 
 using std::numbers::pi;
-using test::says;
 
 /// A rod without weight between two clamps on one line, the second turned.
 Scene twisted_scene(double apart, double turns) {

@@ -19,10 +19,6 @@
 namespace dlo::compare {
 namespace {
 
-using test::error_of;
-using test::heavy_scene;
-using test::says;
-
 const std::string clamped_at_its_begin =
     "[rod]\nlength = \"2 m\"\nbending_stiffness = \"0.5 N m^2\"\nmass_per_length = \"20 g/m\"\n" +
     test::level_clamp;

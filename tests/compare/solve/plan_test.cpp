@@ -20,8 +20,6 @@ namespace dlo::compare {
 namespace {
 
 using Eigen::Vector3d;
-using test::heavy_scene;
-using test::two_clamps;
 
 struct PlannedScene {
   const char* name;

@@ -12,7 +12,6 @@ namespace dlo::compare {
 namespace {
 
 using Eigen::Vector3d;
-using test::heavy_scene;
 
 /// A floor and a tilted wall that no point of a rod of length 1 gets to.
 Scene among_far_obstacles(Scene scene) {

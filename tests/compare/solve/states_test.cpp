@@ -12,7 +12,6 @@ namespace {
 
 using energy_model::Equilibrium;
 using energy_model::Samples;
-using test::heavy_scene;
 
 /// A rod of two stiffnesses, bent in the plane by the larger: it gives way to either side.
 Scene ribbon() {

@@ -18,8 +18,6 @@ namespace dlo::compare {
 namespace {
 
 using Eigen::Vector3d;
-using test::error_of;
-using test::says;
 
 /// A line of 100 m between two pins, in the units that a file would have.
 Scene line(double EA, double apart, double EI = 1) {

@@ -19,7 +19,6 @@ namespace dlo::compare {
 namespace {
 
 using std::numbers::pi;
-using test::heavy_scene;
 
 /// A rod in space between two clamps, the later one turned by `roll`.
 Scene spatial_scene(double roll) {

@@ -21,8 +21,6 @@
 namespace dlo::compare {
 namespace {
 
-using test::says;
-
 Scene battery_scene(const std::string& id) {
   return chosen_scenes(builtin_battery(), {id})[0].scene;
 }

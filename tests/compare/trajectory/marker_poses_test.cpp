@@ -17,10 +17,6 @@
 namespace dlo::compare {
 namespace {
 
-using test::error_of;
-using test::says;
-using test::says_none;
-
 constexpr double radius = 0.2;  // [m]
 constexpr double rate = 2;      // [rad/s]
 

@@ -9,9 +9,6 @@
 namespace dlo::compare {
 namespace {
 
-using test::error_of;
-using test::says;
-
 TEST(ReadMarkers, TakesRowsAndColumnsInAnyOrder) {
   const MarkerMotion read = parse_markers(
       "# by a camera\nx,y,z,s,time\n1,2,3,0.5,0.1\n\n4,5,6,0.2,0.1\r\n7,8,9,0.5,0\n", "m.csv");

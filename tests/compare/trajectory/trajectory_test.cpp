@@ -15,9 +15,6 @@
 namespace dlo::compare {
 namespace {
 
-using test::error_of;
-using test::says;
-
 std::vector<Pose> three_corners() {
   const Eigen::Vector3d x = Eigen::Vector3d::UnitX();
   return {{0, {0, 0, 0}, x},

@@ -11,7 +11,7 @@
 #include "dlo/energy_model/energy.hpp"
 #include "polygon/energy_problems.hpp"
 
-namespace dlo::test {
+namespace dlo::inline test {
 
 using compare::Gripper;
 using compare::MeasuredShape;
@@ -81,4 +81,4 @@ inline Wire wire_of(unsigned seed, int count, int points = 50) {
   return wire;
 }
 
-}  // namespace dlo::test
+}  // namespace dlo::inline test

@@ -22,8 +22,6 @@ namespace dlo::compare {
 namespace {
 
 using Eigen::Vector3d;
-using test::error_of;
-using test::says;
 
 constexpr double per_degree = std::numbers::pi / 180;
 

@@ -22,8 +22,6 @@
 namespace dlo::compare {
 namespace {
 
-using test::says;
-
 constexpr double deg = std::numbers::pi / 180;
 
 /// Wire whose scene contains only nominal values, and a picture of it. EI = 1 in the scenes' unit,
