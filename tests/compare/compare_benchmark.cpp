@@ -20,14 +20,9 @@ using dlo::compare::SceneTemplate;
 using dlo::compare::Sweep;
 using dlo::compare::SweepModel;
 
-constexpr const char* scene = R"([rod]
-length = "50 cm"
-diameter = "2 mm"
-material = "spring_steel"
-[[gripper]]
-at = 0
-position = [0, 0, 0]
-direction = "0 deg"
+constexpr const char* scene = R"(
+rod = { length = "50 cm", diameter = "2 mm", material = "spring_steel" }
+gripper = [{ at = 0, position = [0, 0, 0], direction = "0 deg" }]
 )";
 
 void sweep(benchmark::State& state, SweepModel model, const std::string& rows) {

@@ -11,7 +11,6 @@
 #include <cerrno>
 #include <cstring>
 #include <filesystem>
-#include <functional>
 #include <string>
 #include <vector>
 
@@ -33,21 +32,17 @@ using dlo::compare::InputFile;
 using dlo::test::error_of;
 using dlo::test::says;
 
-std::string input_error_of(const std::function<void()>& read) {
-  return error_of<InputError>([&] { return read(); });
-}
-
 class Reading : public dlo::test::Folder {};
 
 /// Returns the messages of all readers of files for this file.
 std::vector<std::string> messages_of_all_readers(const std::string& file) {
   using namespace dlo::compare;
-  return {input_error_of([&] { (void)load_scene(file); }),
-          input_error_of([&] { (void)load_scene_template(file); }),
-          input_error_of([&] { (void)load_parameters(file); }),
-          input_error_of([&] { (void)load_materials(file); }),
-          input_error_of([&] { (void)load_baseline(file); }),
-          input_error_of([&] { (void)load_shape(file, 1); })};
+  return {error_of<InputError>([&] { (void)load_scene(file); }),
+          error_of<InputError>([&] { (void)load_scene_template(file); }),
+          error_of<InputError>([&] { (void)load_parameters(file); }),
+          error_of<InputError>([&] { (void)load_materials(file); }),
+          error_of<InputError>([&] { (void)load_baseline(file); }),
+          error_of<InputError>([&] { (void)load_shape(file, 1); })};
 }
 
 // A terminal returns the data that were written to it; after its other end is closed, reading
@@ -67,7 +62,7 @@ TEST_F(Reading, AnErrorAfterThePartThatCouldBeReadIsAnError) {
   ::close(other);
   InputFile file(terminal, "a.toml");
   std::string text;
-  const std::string message = input_error_of([&] {
+  const std::string message = error_of<InputError>([&] {
     while (file.read_some(text, 100)) continue;
   });
   EXPECT_EQ(text, "first half");
@@ -119,7 +114,7 @@ TEST_F(Reading, TellsThatAFileIsForOthers) {
   const bool root = ::geteuid() == 0;
   if (root && ::seteuid(nobody) != 0) GTEST_SKIP() << "cannot become another user";
   const std::string message =
-      input_error_of([&] { (void)dlo::compare::load_scene(path("a.toml")); });
+      error_of<InputError>([&] { (void)dlo::compare::load_scene(path("a.toml")); });
   if (root) {
     ASSERT_EQ(::seteuid(0), 0);
   }
@@ -129,10 +124,11 @@ TEST_F(Reading, TellsThatAFileIsForOthers) {
 TEST_F(Reading, EndsWhereAFileIsTooLarge) {
   write("a", std::string(1000, 'x'));
   EXPECT_EQ(InputFile(path("a")).read_all(1000).size(), 1000U);
-  const std::string message = input_error_of([&] { (void)InputFile(path("a")).read_all(999); });
+  const std::string message =
+      error_of<InputError>([&] { (void)InputFile(path("a")).read_all(999); });
   EXPECT_EQ(message, path("a") + ": too large (allowed: files of up to 999 bytes)");
   const std::string endless =
-      input_error_of([] { (void)InputFile("/dev/zero").read_all(std::size_t{1} << 20); });
+      error_of<InputError>([] { (void)InputFile("/dev/zero").read_all(std::size_t{1} << 20); });
   EXPECT_TRUE(says(endless, {"too large"}));
 }
 
@@ -144,7 +140,7 @@ std::string repeated(const std::string& text, int times) {
 
 TEST(TextLimits, NothingIsNestedSoDeepThatAParserOverflows) {
   const auto scene = [](const std::string& text) {
-    return input_error_of([&] { (void)dlo::compare::parse_scene(text, "s.toml"); });
+    return error_of<InputError>([&] { (void)dlo::compare::parse_scene(text, "s.toml"); });
   };
   constexpr int many = 100'000;
   const std::string dots = "s.toml:2: a key of too many dotted parts (allowed: 32 levels)";
@@ -163,7 +159,7 @@ TEST(TextLimits, NothingIsNestedSoDeepThatAParserOverflows) {
 TEST(TextLimits, StringsAndCommentsNestNothing) {
   const auto reads = [](const std::string& line) {
     const std::string text = line + "\n" + dlo::test::steel_rod + dlo::test::level_clamp;
-    return input_error_of([&] { (void)dlo::compare::parse_scene(text, "s.toml"); });
+    return error_of<InputError>([&] { (void)dlo::compare::parse_scene(text, "s.toml"); });
   };
   const std::string deep = repeated("[.{", 50);
   EXPECT_EQ(reads("# " + deep), "no error");
@@ -176,7 +172,7 @@ TEST(TextLimits, StringsAndCommentsNestNothing) {
 
 TEST(TextLimits, NumbersBeyondADoubleAreSaidToBe) {
   const auto scene = [](const std::string& number) {
-    return input_error_of(
+    return error_of<InputError>(
         [&] { (void)dlo::compare::parse_scene("[rod]\nlength = " + number + "\n", "s.toml"); });
   };
   const auto expect = [&](const std::string& number, const std::string& words) {
@@ -196,7 +192,7 @@ TEST(TextLimits, NumbersBeyondADoubleAreSaidToBe) {
 
 TEST(TextLimits, OfShapesAndSweeps) {
   const auto shape = [](const std::string& text) {
-    return input_error_of([&] { (void)dlo::compare::parse_shape(text, "s.json", 1); });
+    return error_of<InputError>([&] { (void)dlo::compare::parse_shape(text, "s.json", 1); });
   };
   EXPECT_EQ(shape(repeated("[", 300'000)),
             "s.json:1: brackets within brackets (allowed: 32 levels)");
@@ -206,7 +202,7 @@ TEST(TextLimits, OfShapesAndSweeps) {
       shape(R"({"a": "[[[[[[[[[[[[[[[[[[[[[[[[[[[[[[[[[[[[[[[\"", "points": [[0, 0], [1, 0]]})"),
       "no error");
   const std::string large(std::size_t{5} << 20, ' ');
-  EXPECT_EQ(input_error_of([&] { (void)dlo::compare::parse_scene(large, "s.toml"); }),
+  EXPECT_EQ(error_of<InputError>([&] { (void)dlo::compare::parse_scene(large, "s.toml"); }),
             "s.toml: 5242880 bytes (allowed: up to 4194304 of TOML)");
 }
 
@@ -218,7 +214,7 @@ TEST(TextLimits, OfThePartsOfAScene) {
   const auto scene = [&](int grippers, int loads, int planes) {
     const std::string text =
         rod + repeated(gripper, grippers) + repeated(load, loads) + repeated(plane, planes);
-    return input_error_of([&] { (void)dlo::compare::parse_scene(text, "s.toml"); });
+    return error_of<InputError>([&] { (void)dlo::compare::parse_scene(text, "s.toml"); });
   };
   EXPECT_EQ(scene(500, 10'000, 1'000), "no error");
   EXPECT_EQ(scene(501, 0, 0), "s.toml:5: gripper: 501 given (allowed: 1 to 500)");
@@ -229,7 +225,7 @@ TEST(TextLimits, OfThePartsOfAScene) {
 TEST(TextLimits, OfVariedFields) {
   const dlo::compare::SceneTemplate scene("[rod]\nlength = 1\n", "s.toml");
   const auto vary = [&](const std::string& field, const std::string& value) {
-    return input_error_of([&] { (void)scene.with({{field, value}}); });
+    return error_of<InputError>([&] { (void)scene.with({{field, value}}); });
   };
   EXPECT_TRUE(says(vary("a" + repeated(".a", 60'000), "1"), {"too many dotted parts"}));
   EXPECT_TRUE(says(vary("gravity", repeated("[", 60'000)), {"brackets within brackets"}));

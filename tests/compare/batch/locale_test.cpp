@@ -61,14 +61,8 @@ class DecimalComma : public dlo::test::Command {
 
 constexpr const char* comma_scene = R"(name = "rod"
 gravity = [0, -9.81, 0]
-[rod]
-length = 0.5
-diameter = "2.5 mm"
-material = { youngs_modulus = "0.5 GPa", density = 1100.25 }
-[[gripper]]
-at = 0
-position = [0.125, 1e-1, 0]
-direction = "-12.5 deg"
+rod = { length = 0.5, diameter = "2.5 mm", material = { youngs_modulus = 5e8, density = 1100.25 } }
+gripper = [{ at = 0, position = [0.125, 1e-1, 0], direction = "-12.5 deg" }]
 )";
 
 TEST_F(DecimalComma, IsInForce) {

@@ -6,7 +6,6 @@
 
 #include <algorithm>
 #include <cstddef>
-#include <functional>
 #include <string>
 #include <utility>
 #include <variant>
@@ -21,21 +20,11 @@
 namespace dlo::compare {
 namespace {
 
-using test::error_of;
-using test::says;
-using test::says_none;
-using test::sweep;
-using test::sweep_scene;
-
 std::vector<std::string> values(const std::string& text) {
   const Axis axis = parse_axis(text);
   std::vector<std::string> result;
   for (std::int64_t i = 0; i < axis.count; ++i) result.push_back(axis.value(i));
   return result;
-}
-
-std::string message_of(const std::function<void()>& work) {
-  return error_of<InputError>([&] { return work(); });
 }
 
 TEST(SweepGrid, ReadsListsRangesAndUnits) {
@@ -68,7 +57,7 @@ TEST(SweepGrid, RefusesWhatIsNoAxisAndSaysWhy) {
       {"a=1\n2", "control character"},
       {"a=lin:1:2:99999999999999999999", "from 2"}};
   for (const auto& [text, words] : cases) {
-    const std::string message = message_of([&, axis = text] { (void)parse_axis(axis); });
+    const std::string message = error_of<InputError>([&, axis = text] { (void)parse_axis(axis); });
     EXPECT_TRUE(says(message, {words, "allowed"})) << text;
   }
 }
@@ -166,7 +155,8 @@ TEST(SceneTemplate, ErrorsNameFileFieldAndValue) {
                                                       {{"rod", "3"}, "must be a table"},
                                                       {{"gripper", "3"}, "[[gripper]]"}};
   for (const auto& [field, words] : cases) {
-    const std::string message = message_of([&, value = field] { (void)base.with({value}); });
+    const std::string message =
+        error_of<InputError>([&, value = field] { (void)base.with({value}); });
     EXPECT_TRUE(says(message, {words, "swept.toml"})) << field.field;
   }
 }
@@ -204,7 +194,8 @@ TEST(Sweep, ARefusedOrUnsolvedSceneIsARow) {
 }
 
 TEST(Sweep, RefusesAGridOfWhichNoSceneCanBeRead) {
-  const std::string message = message_of([] { (void)sweep({"rod.lenght=lin:1:2:100000"}); });
+  const std::string message =
+      error_of<InputError>([] { (void)sweep({"rod.lenght=lin:1:2:100000"}); });
   EXPECT_TRUE(says(message, {"unknown key"}));
   // One good scene of 997 is found.
   EXPECT_EQ(sweep({"rod.length=lin:-995:1:997"}).grid().size(), 997);

@@ -20,8 +20,6 @@
 namespace dlo::compare {
 namespace {
 
-using test::heavy_scene;
-
 TEST(ChainAndForceModel, RestInTheSamePolygonWithThePhysicalStretchStiffness) {
   for (Scene scene : paper_scenes()) {
     for (const BendingLaw law : {BendingLaw::paper, BendingLaw::hooke}) {
@@ -230,23 +228,11 @@ TEST(Solve, TorquesAreAboutTheGripperWhereverItIs) {
 // A search ends on a saddle here; the chain's shape leads to the table.
 TEST(Solve, ACableBetweenClampsLiesOnATable) {
   const Scene scene = parse_scene(R"(
-[rod]
-length = 2
-diameter = "6 mm"
-material = "silicone"
-[[gripper]]
-at = 0
-position = [0, 0, 0]
-direction = "0 deg"
-[[gripper]]
-at = 2
-position = [1.6, 0, 0]
-direction = "0 deg"
-[[obstacle]]
-point = [0, -0.5, 0]
-normal = [0, 1, 0]
-[force_model]
-points = 160
+rod = { length = 2, diameter = "6 mm", material = "silicone" }
+gripper = [{ at = 0, position = [0, 0, 0], direction = "0 deg" },
+           { at = 2, position = [1.6, 0, 0], direction = "0 deg" }]
+obstacle = [{ point = [0, -0.5, 0], normal = [0, 1, 0] }]
+force_model = { points = 160 }
 )",
                                   "table.toml");
   const Solution energy = solve(scene, Model::energy, {.time_limit = 300});

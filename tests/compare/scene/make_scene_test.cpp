@@ -13,9 +13,6 @@
 namespace dlo::compare {
 namespace {
 
-using test::error_of;
-using test::says;
-
 const std::string text = R"(name = "led over a peg"
 gravity = [0, 0, "-9.81 m/s^2"]
 
@@ -71,11 +68,6 @@ Scene without_lines(Scene scene) {
   return scene;
 }
 
-template <typename Make>
-std::string refusal_of(const Make& make) {
-  return error_of<InputError>([&] { return make(); });
-}
-
 TEST(MakeScene, IsTheSceneOfAFileWithTheSameFields) {
   EXPECT_EQ(without_lines(make_scene(fields, "my.toml")),
             without_lines(parse_scene(text, "my.toml")));
@@ -113,8 +105,8 @@ TEST(MakeScene, RefusesWhatAFileMayNotSayInTheSameWords) {
     wrong.replace(wrong.find(said), said.size(), meant);
     std::vector<SceneField> made = fields;
     made.push_back(field);
-    const std::string of_file = refusal_of([&] { return parse_scene(wrong, "scene"); });
-    const std::string of_code = refusal_of([&] { return make_scene(made); });
+    const std::string of_file = error_of<InputError>([&] { return parse_scene(wrong, "scene"); });
+    const std::string of_code = error_of<InputError>([&] { return make_scene(made); });
     // But for the line, from the key on.
     const std::string key = field.field.substr(field.field.rfind('.') + 1);
     ASSERT_TRUE(says(of_file, {key}));
@@ -127,8 +119,8 @@ TEST(MakeScene, RefusesWhatAFileMayNotSayInTheSameWords) {
 TEST(MakeScene, SaysWhichElementIsMissing) {
   std::vector<SceneField> made = fields;
   made.push_back({"gripper.4.at", 0});
-  EXPECT_TRUE(says(refusal_of([&] { return make_scene(made); }), {"allowed: 0 to 1"}));
-  EXPECT_TRUE(says(refusal_of([] { return make_scene({}); }), {"rod"}));
+  EXPECT_TRUE(says(error_of<InputError>([&] { return make_scene(made); }), {"allowed: 0 to 1"}));
+  EXPECT_TRUE(says(error_of<InputError>([] { return make_scene({}); }), {"rod"}));
 }
 
 // Arc lengths beyond an end by the rounding error of a sum of segments.
@@ -139,7 +131,8 @@ TEST(ArcLengths, ARoundingBeyondAnEndAreThatEnd) {
   rounded.push_back({"gripper.0.at", -1e-8});
   EXPECT_EQ(make_scene(rounded).grippers[0].at, 0);
   rounded.push_back({"gripper.1.at", 0.3001});
-  EXPECT_TRUE(says(refusal_of([&] { return make_scene(rounded); }), {"allowed: 0 to 0.3 m"}));
+  EXPECT_TRUE(
+      says(error_of<InputError>([&] { return make_scene(rounded); }), {"allowed: 0 to 0.3 m"}));
   EXPECT_EQ(*on_rod(0.3 + 1e-8, 0.3), 0.3);
   EXPECT_FALSE(on_rod(0.3 + 1e-6, 0.3));
   EXPECT_FALSE(on_rod(std::nan(""), 0.3));
@@ -148,7 +141,7 @@ TEST(ArcLengths, ARoundingBeyondAnEndAreThatEnd) {
   for (const Model model : {Model::energy, Model::exact, Model::chain}) {
     const Shape shape = solve(wire, model, {}, {-1e-8, 0.15, 0.3 + 1e-8}).shape;
     EXPECT_EQ(shape.arc_length, (std::vector<double>{0, 0.15, 0.3})) << to_string(model);
-    EXPECT_EQ(refusal_of([&] {
+    EXPECT_EQ(error_of<InputError>([&] {
                 return solve(wire, model, {}, {0, 0.31});
               }),
               "solve: s = 0.31 m (allowed: 0 to 0.3 m)");

@@ -25,21 +25,10 @@ using dlo::test::Command;
 // A heavy arch in space between two clamps, with a load.
 Scene loaded_arch() {
   return parse_scene(R"(
-[rod]
-length = 1
-diameter = "4 mm"
-material = "nylon"
-[[gripper]]
-at = 0
-position = [0, 0, 0]
-direction = "60 deg"
-[[gripper]]
-at = 1
-position = [0.5, 0.1, 0.2]
-direction = [1, -1, 0]
-[[load]]
-at = 0.4
-force = [0, -0.05, 0.02]
+rod = { length = 1, diameter = "4 mm", material = "nylon" }
+gripper = [{ at = 0, position = [0, 0, 0], direction = "60 deg" },
+           { at = 1, position = [0.5, 0.1, 0.2], direction = [1, -1, 0] }]
+load = [{ at = 0.4, force = [0, -0.05, 0.02] }]
 )",
                      "arch.toml");
 }

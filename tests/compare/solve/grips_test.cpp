@@ -26,10 +26,6 @@ namespace dlo::compare {
 namespace {
 
 using Eigen::Vector3d;
-using test::error_of;
-using test::heavy_scene;
-using test::says;
-using test::two_clamps;
 
 Scene spatial_clamps() { return two_clamps(5, {0.6, 0.1, 0.2}, {0.5, 0.3, -0.6}); }
 
@@ -217,21 +213,10 @@ TEST(Walls, AHeldPointHasNoEnergyOfContact) {
 // A wire pushed against a wall, which its tip slides along.
 TEST(Walls, ATipAgainstAWallIsWhereOtherModelsHaveIt) {
   Scene scene = parse_scene(R"(
-gravity = [0, -9.81, 0]
-[rod]
-length = "30 cm"
-diameter = "0.5 mm"
-material = "copper"
-[[gripper]]
-at = 0
-position = [0, 0, 0]
-direction = "0 deg"
-[[obstacle]]
-point = ["25 cm", 0, 0]
-normal = [-1, 0, 0]
-[force_model]
-law = "hooke"
-bookkeeping = "consistent"
+rod = { length = "30 cm", diameter = "0.5 mm", material = "copper" }
+gripper = [{ at = 0, position = [0, 0, 0], direction = "0 deg" }]
+obstacle = [{ point = ["25 cm", 0, 0], normal = [-1, 0, 0] }]
+force_model = { law = "hooke", bookkeeping = "consistent" }
 )",
                             "copper.toml");
   const Solution energy = solve(scene, Model::energy);
@@ -259,24 +244,10 @@ bookkeeping = "consistent"
 // A clamp on the floor points into it: no rod above the floor can leave it in this direction.
 TEST(Walls, AShapeThatIsNotVerifiedIsShownOnlyToWhoAcceptsIt) {
   const Scene scene = parse_scene(R"(
-[rod]
-length = "30 cm"
-diameter = "0.5 mm"
-material = "copper"
-torsional_stiffness = "2.76e-4 N m^2"
-[[gripper]]
-at = 0
-position = [0, 0, 0]
-direction = "-20 deg"
-roll = "0 deg"
-[[gripper]]
-at = "30 cm"
-position = ["20 cm", 0, 0]
-direction = "0 deg"
-roll = "90 deg"
-[[obstacle]]
-point = [0, "-0.25 mm", 0]
-normal = [0, 1, 0]
+rod = { length = "30 cm", diameter = "0.5 mm", material = "copper", torsional_stiffness = 2.76e-4 }
+gripper = [{ at = 0, position = [0, 0, 0], direction = "-20 deg", roll = "0 deg" },
+           { at = "30 cm", position = ["20 cm", 0, 0], direction = "0 deg", roll = "90 deg" }]
+obstacle = [{ point = [0, "-0.25 mm", 0], normal = [0, 1, 0] }]
 )",
                                   "copper.toml");
   EXPECT_TRUE(

@@ -22,8 +22,6 @@ namespace dlo::compare {
 namespace {
 
 using energy_model::JointLaw;
-using test::error_of;
-using test::says;
 
 Scene rope_of_law(std::optional<JointLaw> law) {
   Scene scene = test::heavy_scene(60, 0);
@@ -100,19 +98,17 @@ TEST(ModelChain, LawIsAKeyOfTheSceneThatOtherModelsRefuse) {
       "[[gripper]]\nat = 0\nposition = [0, 0, 0]\ndirection = \"0 deg\"\n[force_model]\n";
   const Scene scene = parse_scene(text + "joint_law = \"binormal\"\n", "my.toml");
   EXPECT_EQ(scene.force_model.joint_law, JointLaw::binormal);
-  const auto refusal = [](const auto& what) -> std::string {
-    return error_of<InputError>([&] { return what(); });
-  };
-  const std::string of_force = refusal([&] { (void)solve(scene, Model::force); });
+  const std::string of_force = error_of<InputError>([&] { (void)solve(scene, Model::force); });
   EXPECT_TRUE(says(of_force, {"no other model than chain has it"}));
-  EXPECT_EQ(refusal([&] { (void)compare(scene); }), of_force);
-  EXPECT_TRUE(says(refusal([&] {
+  EXPECT_EQ(error_of<InputError>([&] { (void)compare(scene); }), of_force);
+  EXPECT_TRUE(says(error_of<InputError>([&] {
                      (void)parse_scene(text + "law = \"paper\"\njoint_law = \"linear\"\n",
                                        "my.toml");
                    }),
                    {"joint_law would have no effect"}));
-  EXPECT_TRUE(says(refusal([&] { (void)parse_scene(text + "joint_law = \"cubic\"\n", "my.toml"); }),
-                   {"linear"}));
+  EXPECT_TRUE(says(
+      error_of<InputError>([&] { (void)parse_scene(text + "joint_law = \"cubic\"\n", "my.toml"); }),
+      {"linear"}));
 }
 
 }  // namespace

@@ -14,26 +14,11 @@
 namespace dlo::compare {
 namespace {
 
-using test::error_of;
-using test::says;
-
 std::string taut_wire(const std::string& gravity) {
   return "gravity = " + gravity + R"(
-[rod]
-length = 1
-diameter = "2 mm"
-material = "spring_steel"
-torsional_stiffness = 0.2
-[[gripper]]
-at = 0
-position = [0, 0, 0]
-direction = [1, 0, 0]
-roll = 0
-[[gripper]]
-at = 1
-position = [1, 0, 0]
-direction = [1, 0, 0]
-roll = "1 rad"
+rod = { length = 1, diameter = "2 mm", material = "spring_steel", torsional_stiffness = 0.2 }
+gripper = [{ at = 0, position = [0, 0, 0], direction = [1, 0, 0], roll = 0 },
+           { at = 1, position = [1, 0, 0], direction = [1, 0, 0], roll = "1 rad" }]
 )";
 }
 
