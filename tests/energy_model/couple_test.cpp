@@ -21,8 +21,6 @@
 namespace dlo::energy_model {
 namespace {
 
-using std::numbers::pi;
-
 Problem with_couple(Problem problem, double at, double torque) {
   problem.loads.push_back({at, {0, 0, 0}, {0, 0, torque}});
   return problem;

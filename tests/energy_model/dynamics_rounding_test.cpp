@@ -16,8 +16,6 @@
 namespace dlo::energy_model {
 namespace {
 
-using Eigen::Vector3d;
-
 /// A clamp that starts at once, which strikes the rod.
 Dynamics struck_at(const std::vector<double>& breaks, double frame) {
   constexpr double start = 0.3;

@@ -20,9 +20,6 @@
 namespace dlo::energy_model {
 namespace {
 
-using Eigen::Vector3d;
-using std::numbers::pi;
-
 constexpr double first_beta = 1.8751040687119612;
 /// Period of a cantilever with EI = l = rho A = 1.
 constexpr double first_period = 2 * pi / (first_beta * first_beta);

@@ -14,8 +14,6 @@
 namespace dlo::energy_model {
 namespace {
 
-using std::numbers::pi;
-
 TEST(ExactSections, AColumnOfTwoStiffnessesBucklesUnderItsLoad) {
   // Linear theory: tan(k a) tan(q b) = q / k, k = P^(1/2), q = (P / stiffness)^(1/2).
   constexpr double step = 0.4;

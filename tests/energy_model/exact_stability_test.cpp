@@ -16,8 +16,6 @@
 namespace dlo::energy_model {
 namespace {
 
-using std::numbers::pi;
-
 bool says(const Equilibrium& equilibrium, const std::string& words) {
   return equilibrium.message.find(words) != std::string::npos;
 }

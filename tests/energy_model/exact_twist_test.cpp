@@ -28,8 +28,6 @@
 namespace dlo::energy_model {
 namespace {
 
-using std::numbers::pi;
-
 /// The span of a rod between clamps that hold frames.
 RodSpan span_of(const Problem& problem) { return cut_at_clamps(problem).front(); }
 

@@ -19,7 +19,6 @@ namespace dlo::energy_model {
 namespace {
 
 using Eigen::Matrix3d;
-using Eigen::Vector3d;
 
 Problem clamped_rod() {
   Problem problem;

@@ -17,8 +17,6 @@
 namespace dlo::energy_model {
 namespace {
 
-using std::numbers::pi;
-
 /// Short of self-buckling, at Gamma = 7.8373474, by this share and 6e-8.
 Problem upright(double below) { return heavy_cantilever(7.837347 * (1 - below), 90); }
 

@@ -19,8 +19,6 @@
 namespace dlo::energy_model {
 namespace {
 
-using std::numbers::pi;
-
 /// A rod of unit length and rigidity, GJ = 0.8, under its weight between two clamps that are turned
 /// against each other in space.
 struct SpatialRod {

@@ -14,6 +14,9 @@
 
 namespace dlo::inline test {
 
+using Eigen::Vector3d;
+using std::numbers::pi;
+
 /// Both solvers with their default options.
 inline constexpr std::array<energy_model::Equilibrium (*)(const energy_model::Problem&), 2>
     solvers = {

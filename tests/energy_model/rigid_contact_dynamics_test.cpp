@@ -22,8 +22,6 @@
 namespace dlo::energy_model {
 namespace {
 
-using Eigen::Vector3d;
-
 const obstacle::Body low_floor = obstacle::Body::half_space({0, -0.2, 0}, {0, 1, 0});
 
 MovingRod cantilever_over(double gamma, const obstacle::Body& body) {

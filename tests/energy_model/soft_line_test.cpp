@@ -17,8 +17,6 @@
 namespace dlo::energy_model {
 namespace {
 
-using Eigen::Vector3d;
-
 /// Returns a line with l = 1, w = 1 along -z, EI = `stiffness`.
 Problem line(double stiffness) {
   Problem problem;

@@ -9,6 +9,7 @@
 
 #include "dlo/energy_model/equilibrium.hpp"
 #include "dlo/energy_model/status.hpp"
+#include "problems.hpp"
 
 namespace dlo::inline test {
 

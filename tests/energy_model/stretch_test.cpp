@@ -16,8 +16,6 @@
 namespace dlo::energy_model {
 namespace {
 
-using Eigen::Vector3d;
-
 Problem rod(double EA) {
   Problem problem;
   problem.length = 1;

@@ -20,9 +20,6 @@
 namespace dlo::energy_model {
 namespace {
 
-using Eigen::Vector3d;
-using std::numbers::pi;
-
 using Solver = Equilibrium (*)(const Problem&);
 
 /// Test of both models, by name.

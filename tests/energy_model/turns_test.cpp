@@ -19,9 +19,6 @@
 namespace dlo::energy_model {
 namespace {
 
-using Eigen::Vector3d;
-using std::numbers::pi;
-
 /// `turns` of a helix of a radius and a pitch [m] about the x axis, and its tangents at the ends.
 struct HelixShape {
   Eigen::Matrix3Xd points;

@@ -16,8 +16,6 @@
 namespace dlo::energy_model {
 namespace {
 
-using std::numbers::pi;
-
 /// A cable of 0.8 m, EI 0.01 N m^2, 50 g/m, in SI units.
 Problem cable() {
   Problem problem;

@@ -17,8 +17,6 @@
 namespace dlo::energy_model {
 namespace {
 
-using std::numbers::pi;
-
 /// Two clamps that face each other, `distance` apart on a line, the second turned by `roll`.
 Problem turned_rod(double distance, double roll, double weight) {
   return test::framed_clamps(weight, distance, 0.75, roll);

@@ -15,9 +15,6 @@
 namespace dlo::energy_model {
 namespace {
 
-using Eigen::Vector3d;
-using std::numbers::pi;
-
 /// Clamps that do not fit each other, and weight.
 Problem rolled_section(double roll) {
   Problem problem = test::heavy_cantilever(3, 0);

@@ -21,8 +21,6 @@
 namespace dlo::energy_model {
 namespace {
 
-using Eigen::Vector3d;
-
 /// A rod with EI = l = rho A = 1.
 Problem unit_rod(const Vector3d& weight, std::vector<Grip> grips) {
   Problem problem;

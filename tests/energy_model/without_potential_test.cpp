@@ -27,8 +27,6 @@
 namespace dlo::energy_model {
 namespace {
 
-using std::numbers::pi;
-
 /// A rod of unit length and stiffnesses about d1, d2 and t, as this file integrates it.
 struct TipRod {
   Eigen::Vector3d stiffness = {1, 1, 1};
