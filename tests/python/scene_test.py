@@ -10,23 +10,11 @@ import dlo
 
 TEXT = """
 name = "two metres"
-[rod]
-length = "2 m"
-diameter = "6 mm"
-material = "silicone"
-[[gripper]]
-at = 0
-position = [0, 0, 0]
-direction = "30 deg"
-hold = "clamp"
-[[load]]
-at = "2 m"
-mass = "10 g"
-[[obstacle]]
-point = [0, "-5 m", 0]
-normal = [0, 1, 0]
-[force_model]
-points = 20
+rod = {length = "2 m", diameter = "6 mm", material = "silicone"}
+gripper = [{at = 0, position = [0, 0, 0], direction = "30 deg", hold = "clamp"}]
+load = [{at = "2 m", mass = "10 g"}]
+obstacle = [{point = [0, "-5 m", 0], normal = [0, 1, 0]}]
+force_model = {points = 20}
 """
 
 
@@ -349,22 +337,9 @@ def test_loads_and_media_without_potential_are_fields(steel):
 
 
 MOVING = """
-[rod]
-length = 1
-diameter = 0.01
-material = "silicone"
-[[gripper]]
-at = 0
-direction = "0 deg"
-[[gripper.pose]]
-time = 0
-position = [0, 0, 0]
-[[gripper.pose]]
-time = 1
-position = [0, 0.5, 0]
-[track]
-frame_rate = 20
-step_rate = 900
+rod = {length = 1, diameter = 0.01, material = "silicone"}
+gripper = [{at = 0, direction = "0 deg", pose = [{time = 0, position = [0, 0, 0]}, {time = 1, position = [0, 0.5, 0]}]}]
+track = {frame_rate = 20, step_rate = 900}
 """
 
 
