@@ -293,18 +293,13 @@ class TwistPath {
     }
     if (!way) way = direction_by_size(reduced, 0);
     double push = first_push;
-    for (int i = 0; i < 2 * most_pushes; ++i) {
+    for (int i = 0; i < most_pushes; ++i, push *= 3) {
       SpanSolution next = from;
       next.evaluations = 0;
       if (way) next.x += push * *way;
-      if (i % 2 == 0) {
-        descend_by_augmented_lagrangian(next, {.load = load_, .deadline = &options_.deadline});
-      } else {
-        descend_in_trust_region(next, {.load = load_,
-                                       .gradient_tolerance = handover_gradient,
-                                       .deadline = &options_.deadline});
-        push *= 3;
-      }
+      descend_in_trust_region(
+          next,
+          {.load = load_, .gradient_tolerance = handover_gradient, .deadline = &options_.deadline});
       if (succeeded(next.status)) newton(next, NewtonMethod::newton);
       next = on_obstacles(std::move(next));
       spent_ += std::exchange(next.evaluations, 0);
