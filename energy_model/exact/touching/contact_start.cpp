@@ -14,8 +14,6 @@ namespace dlo::energy_model {
 namespace {
 
 constexpr double arc_length_rounding = 1e-9;  // difference of equal arc lengths, in l
-// Length of an interval times the square root of the force that bends.
-constexpr double growth_of_interval = 3;
 
 class Layout {
  public:
@@ -68,7 +66,7 @@ class Layout {
     const auto same = [](double a, double b) { return b - a < arc_length_rounding; };
     touched.erase(std::unique(touched.begin(), touched.end(), same), touched.end());
     force = std::max(1.0, force / least_bending_stiffness(start_.span));
-    const double longest = std::min(start_.span.length / 8, growth_of_interval / std::sqrt(force));
+    const double longest = std::min(start_.span.length / 8, largest_growth / std::sqrt(force));
     start_.mesh = make_mesh(start_.span, longest, touched);
     start_.mesh.contacts.surface.resize(static_cast<std::size_t>(start_.mesh.intervals()));
   }
