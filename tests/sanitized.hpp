@@ -9,7 +9,9 @@
 #endif
 #endif
 
-namespace dlo::inline test {
+#include "helpers.hpp"
+
+namespace dlo::test {
 
 /// Whether this is a sanitizer build. What is counted there is paths, not draws: statistics are
 /// proven by the release build, which runs the same tests in full.
@@ -22,4 +24,4 @@ inline constexpr bool sanitized = false;
 /// How many of `all` draws are made, and a count that grows with them.
 constexpr int draws(int all) { return sanitized ? all / 4 : all; }
 
-}  // namespace dlo::inline test
+}  // namespace dlo::test

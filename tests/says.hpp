@@ -5,7 +5,9 @@
 #include <string>
 #include <vector>
 
-namespace dlo::inline test {
+#include "helpers.hpp"
+
+namespace dlo::test {
 
 /// Whether a text has each of these parts; if not, which it lacks.
 inline testing::AssertionResult says(const std::string& text,
@@ -41,4 +43,4 @@ std::string error_of(const Work& work) {
   return "no error";
 }
 
-}  // namespace dlo::inline test
+}  // namespace dlo::test

@@ -4,10 +4,11 @@
 
 #include <string>
 
+#include "../helpers.hpp"
 #include "command_fixture.hpp"
 #include "scene_text.hpp"
 
-namespace dlo::inline test {
+namespace dlo::test {
 
 /// Fixture for the command calibrate: rods and their observed shapes.
 class CalibrateCommand : public Command {
@@ -25,4 +26,4 @@ class CalibrateCommand : public Command {
   }
 };
 
-}  // namespace dlo::inline test
+}  // namespace dlo::test

@@ -15,13 +15,14 @@
 #include <utility>
 #include <vector>
 
+#include "../helpers.hpp"
 #include "../says.hpp"
 #include "csv_table.hpp"
 #include "folder_fixture.hpp"
 #include "run_command.hpp"
 #include "shell_words.hpp"
 
-namespace dlo::inline test {
+namespace dlo::test {
 
 /// Result of a command.
 struct Outcome {
@@ -151,4 +152,4 @@ class Command : public Folder {
   static std::string steel() { return std::string(DLO_DATA) + "/scenes/spring_steel_175.toml"; }
 };
 
-}  // namespace dlo::inline test
+}  // namespace dlo::test

@@ -10,7 +10,9 @@
 #include <utility>
 #include <vector>
 
-namespace dlo::inline test {
+#include "../helpers.hpp"
+
+namespace dlo::test {
 
 using CsvRow = std::vector<std::string>;
 
@@ -72,4 +74,4 @@ inline std::string in_first_row(const std::string& text, const std::string& colu
   return rows.at(1).at(static_cast<std::size_t>(name - rows.at(0).begin()));
 }
 
-}  // namespace dlo::inline test
+}  // namespace dlo::test

@@ -10,7 +10,9 @@
 #include <string>
 #include <vector>
 
-namespace dlo::inline test {
+#include "../helpers.hpp"
+
+namespace dlo::test {
 
 /// Fixture with a private folder, which is removed with it.
 class Folder : public testing::Test {
@@ -48,4 +50,4 @@ class Folder : public testing::Test {
       std::filesystem::temp_directory_path() / ("dlo_test_" + std::to_string(::getpid()));
 };
 
-}  // namespace dlo::inline test
+}  // namespace dlo::test

@@ -6,13 +6,14 @@
 #include <random>
 #include <vector>
 
+#include "../helpers.hpp"
 #include "dlo/compare/alignment.hpp"
 #include "dlo/compare/material_fit.hpp"
 #include "dlo/compare/reference.hpp"
 #include "dlo/compare/shape_file.hpp"
 #include "dlo/compare/solution.hpp"
 
-namespace dlo::inline test {
+namespace dlo::test {
 
 /// Returns `count` uneven arc lengths on a rod [m], no two closer than 2 % of its length.
 inline std::vector<double> uneven_arc_lengths(std::mt19937& random, int count, double length) {
@@ -84,4 +85,4 @@ inline compare::MeasuredShape seen_shape(const compare::Scene& scene,
   return {"seen", compare::solve_reference(scene, compare::Model::energy).sample(s).points, s};
 }
 
-}  // namespace dlo::inline test
+}  // namespace dlo::test

@@ -5,9 +5,10 @@
 #include <string>
 #include <vector>
 
+#include "../helpers.hpp"
 #include "command_fixture.hpp"
 
-namespace dlo::inline test {
+namespace dlo::test {
 
 /// Fixture that runs lines of bash in a private folder, for tests of the command's output.
 class Output : public Command {
@@ -37,4 +38,4 @@ class Output : public Command {
   }
 };
 
-}  // namespace dlo::inline test
+}  // namespace dlo::test

@@ -5,7 +5,9 @@
 #include <algorithm>
 #include <cmath>
 
-namespace dlo::inline test {
+#include "../helpers.hpp"
+
+namespace dlo::test {
 
 /// Moment of a joint divided by its spring constant, and its derivative by the angle.
 struct JointMoment {
@@ -69,4 +71,4 @@ Eigen::Matrix3Xd chain_at_rest(const Eigen::VectorXd& segments, const Eigen::Vec
   return points;
 }
 
-}  // namespace dlo::inline test
+}  // namespace dlo::test

@@ -1,6 +1,8 @@
 #pragma once
 
-namespace dlo::inline test {
+#include "../helpers.hpp"
+
+namespace dlo::test {
 
 /// Text of a scene file: a rope from a pin to the left of a peg, with a load at its end. The rope
 /// may hang next to the peg or lie over it.
@@ -16,4 +18,4 @@ bending_stiffness = "5e-3 N m^2"
 mass_per_length = "0.06 kg/m"
 )";
 
-}  // namespace dlo::inline test
+}  // namespace dlo::test

@@ -2,11 +2,12 @@
 
 #include <string>
 
+#include "../helpers.hpp"
 #include "../says.hpp"
 #include "dlo/compare/error.hpp"
 #include "dlo/compare/scene_file.hpp"
 
-namespace dlo::inline test {
+namespace dlo::test {
 
 /// Returns a gripper at the beginning of the rod and the origin.
 /// @param held  a direction or `hold = "pin"`
@@ -26,4 +27,4 @@ inline std::string scene_error(const std::string& text) {
   return error_of<compare::InputError>([&] { return compare::parse_scene(text, "my.toml"); });
 }
 
-}  // namespace dlo::inline test
+}  // namespace dlo::test

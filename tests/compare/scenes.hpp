@@ -3,9 +3,10 @@
 #include <cmath>
 #include <numbers>
 
+#include "../helpers.hpp"
 #include "dlo/compare/scene.hpp"
 
-namespace dlo::inline test {
+namespace dlo::test {
 
 /// Returns a rod of 1 m under its weight along -y, clamped at the origin.
 inline compare::Scene heavy_scene(double gamma, double degrees) {
@@ -32,4 +33,4 @@ inline compare::Scene two_clamps(double gamma, const Eigen::Vector3d& end,
   return scene;
 }
 
-}  // namespace dlo::inline test
+}  // namespace dlo::test

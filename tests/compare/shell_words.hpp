@@ -5,9 +5,10 @@
 #include <string>
 #include <vector>
 
+#include "../helpers.hpp"
 #include "foreign/child_process.hpp"
 
-namespace dlo::inline test {
+namespace dlo::test {
 
 /// Returns the words into which sh(1) splits a line by blanks, quotes and backslashes; nothing if
 /// the line has anything else that a shell acts on, such as pipes, variables and patterns.
@@ -19,4 +20,4 @@ inline std::optional<std::vector<std::string>> shell_words(const std::string& li
   return compare::command_words(line, "shell_words");
 }
 
-}  // namespace dlo::inline test
+}  // namespace dlo::test

@@ -3,10 +3,11 @@
 #include <string>
 #include <vector>
 
+#include "../helpers.hpp"
 #include "batch/sweep.hpp"
 #include "scene_text.hpp"
 
-namespace dlo::inline test {
+namespace dlo::test {
 
 inline const std::string sweep_scene = "name = \"swept\"\n" + steel_rod + level_clamp;
 
@@ -19,4 +20,4 @@ inline compare::Sweep sweep(const std::vector<std::string>& vary,
   return {compare::SceneTemplate(scene, "swept.toml"), compare::Grid(axes), model};
 }
 
-}  // namespace dlo::inline test
+}  // namespace dlo::test

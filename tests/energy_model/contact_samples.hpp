@@ -6,11 +6,12 @@
 #include <algorithm>
 #include <cmath>
 
+#include "../helpers.hpp"
 #include "dlo/energy_model/equilibrium.hpp"
 #include "dlo/energy_model/problem.hpp"
 #include "solved.hpp"
 
-namespace dlo::inline test {
+namespace dlo::test {
 
 /// Checks the contacts of a certified shape by its samples and forces alone: no point of the rod is
 /// within a rigid obstacle, every contact is on the surface of its obstacle, and no force pulls.
@@ -38,4 +39,4 @@ inline void expect_only_pushed(const energy_model::Problem& problem,
   }
 }
 
-}  // namespace dlo::inline test
+}  // namespace dlo::test

@@ -8,10 +8,11 @@
 #include <cstddef>
 #include <vector>
 
+#include "../helpers.hpp"
 #include "dlo/energy_model/equilibrium.hpp"
 #include "dlo/energy_model/problem.hpp"
 
-namespace dlo::inline test {
+namespace dlo::test {
 
 /// Violations of the conditions of equilibrium by a shape, from its samples and reactions alone.
 struct BalanceDefects {
@@ -234,4 +235,4 @@ inline BalanceDefects balance_of(const energy_model::Problem& problem,
   return defects;
 }
 
-}  // namespace dlo::inline test
+}  // namespace dlo::test

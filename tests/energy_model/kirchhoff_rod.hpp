@@ -5,11 +5,12 @@
 #include <cstddef>
 #include <vector>
 
+#include "../helpers.hpp"
 #include "equilibrium_balance.hpp"
 #include "runge_kutta.hpp"
 #include "solved.hpp"
 
-namespace dlo::inline test {
+namespace dlo::test {
 
 /// Returns the matrix with hat(u) v = u x v.
 inline Eigen::Matrix3d hat_of(const Eigen::Vector3d& u) {
@@ -79,4 +80,4 @@ inline RodEnd carried_along(const energy_model::Problem& problem,
   return end;
 }
 
-}  // namespace dlo::inline test
+}  // namespace dlo::test

@@ -7,10 +7,11 @@
 #include <cstddef>
 #include <vector>
 
+#include "../helpers.hpp"
 #include "dlo/energy_model/equilibrium.hpp"
 #include "dlo/energy_model/problem.hpp"
 
-namespace dlo::inline test {
+namespace dlo::test {
 
 /// Similarity transformation of a rod: factors of its lengths and stiffnesses, a rotation and a
 /// translation.
@@ -79,4 +80,4 @@ struct Placement {
   }
 };
 
-}  // namespace dlo::inline test
+}  // namespace dlo::test

@@ -6,10 +6,11 @@
 #include <cmath>
 #include <vector>
 
+#include "../helpers.hpp"
 #include "dlo/energy_model/energy.hpp"
 #include "dlo/energy_model/polygon.hpp"
 
-namespace dlo::inline test {
+namespace dlo::test {
 
 /// Elastic polygon of a round rod whose ends two clamps hold with their frames, with stiff springs
 /// as obstacles. It shares neither unknowns nor contacts with the energy model. Clamps hold the
@@ -61,4 +62,4 @@ struct PolygonOfRod {
   }
 };
 
-}  // namespace dlo::inline test
+}  // namespace dlo::test

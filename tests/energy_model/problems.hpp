@@ -8,11 +8,12 @@
 #include <stdexcept>
 #include <string>
 
+#include "../helpers.hpp"
 #include "dlo/energy_model/energy.hpp"
 #include "dlo/energy_model/exact.hpp"
 #include "dlo/energy_model/problem.hpp"
 
-namespace dlo::inline test {
+namespace dlo::test {
 
 using Eigen::Vector3d;
 using std::numbers::pi;
@@ -63,4 +64,4 @@ inline nlohmann::json reference_values() {
   return nlohmann::json::parse(stream);
 }
 
-}  // namespace dlo::inline test
+}  // namespace dlo::test

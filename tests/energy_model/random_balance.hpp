@@ -9,13 +9,14 @@
 #include <optional>
 #include <string>
 
+#include "../helpers.hpp"
 #include "dlo/compare.hpp"
 #include "dlo/energy_model/balance.hpp"
 #include "random_contact.hpp"
 #include "random_scenes.hpp"
 #include "solve/polygon_solution.hpp"
 
-namespace dlo::inline test {
+namespace dlo::test {
 
 /// Largest imbalance of the equilibria of one model.
 struct LargestImbalance {
@@ -177,4 +178,4 @@ inline int print_imbalances(std::uint64_t first, std::uint64_t scenes, double ti
   return refused;
 }
 
-}  // namespace dlo::inline test
+}  // namespace dlo::test

@@ -7,10 +7,11 @@
 #include <random>
 #include <vector>
 
+#include "../helpers.hpp"
 #include "dlo/energy_model/energy.hpp"
 #include "problems.hpp"
 
-namespace dlo::inline test {
+namespace dlo::test {
 
 /// Returns a problem with one to three grips above or next to a half-space, drawn by a seed.
 inline energy_model::Problem random_touching_problem(unsigned seed, bool space,
@@ -173,4 +174,4 @@ inline std::optional<energy_model::Problem> random_framed_problem(unsigned seed,
   return problem;
 }
 
-}  // namespace dlo::inline test
+}  // namespace dlo::test

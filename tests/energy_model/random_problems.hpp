@@ -9,9 +9,10 @@
 #include <optional>
 #include <vector>
 
+#include "../helpers.hpp"
 #include "dlo/energy_model/problem.hpp"
 
-namespace dlo::inline test {
+namespace dlo::test {
 
 /// Kinds of random_problem(): in the x-y plane, anywhere in space, in space and twisted, not
 /// intrinsically straight (curved), straight with all kinds of grips (mixed), and with two bending
@@ -318,4 +319,4 @@ inline energy_model::Problem strip_problem(std::uint64_t number) {
   return problem;
 }
 
-}  // namespace dlo::inline test
+}  // namespace dlo::test

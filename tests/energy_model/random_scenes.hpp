@@ -9,12 +9,13 @@
 #include <string>
 #include <vector>
 
+#include "../helpers.hpp"
 #include "dlo/energy_model/energy.hpp"
 #include "dlo/energy_model/exact.hpp"
 #include "equilibrium_balance.hpp"
 #include "random_problems.hpp"
 
-namespace dlo::inline test {
+namespace dlo::test {
 
 /// Comparison of two solutions of one problem.
 enum class Agreement {
@@ -164,4 +165,4 @@ inline std::string scene_text(const energy_model::Problem& problem, const std::s
   return text.str();
 }
 
-}  // namespace dlo::inline test
+}  // namespace dlo::test

@@ -6,7 +6,9 @@
 #include <limits>
 #include <vector>
 
-namespace dlo::inline test {
+#include "../helpers.hpp"
+
+namespace dlo::test {
 
 /// Damping and stress-free curvature of a RigidPolygon, and the floor below it.
 struct PolygonSurroundings {
@@ -187,4 +189,4 @@ inline Eigen::Matrix2Xd limit_of_tips(int free_points, double gamma, PolygonSurr
   return fine + (fine - coarse) / (ratio - 1);
 }
 
-}  // namespace dlo::inline test
+}  // namespace dlo::test

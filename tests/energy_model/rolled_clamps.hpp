@@ -1,8 +1,9 @@
 #pragma once
 
+#include "../helpers.hpp"
 #include "problems.hpp"
 
-namespace dlo::inline test {
+namespace dlo::test {
 
 /// Returns a horizontal rod of unit length and stiffness whose clamps hold its frame, at the
 /// distance `span`, with a roll of the second clamp.
@@ -26,4 +27,4 @@ inline energy_model::Problem rolled_clamps(const Eigen::Vector3d& end,
   return problem;
 }
 
-}  // namespace dlo::inline test
+}  // namespace dlo::test

@@ -1,6 +1,8 @@
 #pragma once
 
-namespace dlo::inline test {
+#include "../helpers.hpp"
+
+namespace dlo::test {
 
 /// Makes one step of the classical Runge-Kutta method, of order four.
 /// @param rate  of the state, by position (or time) and state
@@ -13,4 +15,4 @@ State runge_kutta(const Rate& rate, Real at, const State& state, Real step) {
   return state + step / 6 * (a + 2 * b + 2 * c + d);
 }
 
-}  // namespace dlo::inline test
+}  // namespace dlo::test

@@ -7,11 +7,12 @@
 #include <stdexcept>
 #include <vector>
 
+#include "../helpers.hpp"
 #include "dlo/energy_model/equilibrium.hpp"
 #include "dlo/energy_model/status.hpp"
 #include "problems.hpp"
 
-namespace dlo::inline test {
+namespace dlo::test {
 
 /// Returns a solver's result, which must have converged: otherwise its message ends the test.
 template <typename Result>
@@ -61,4 +62,4 @@ inline Eigen::Vector3d carried(const energy_model::Samples& samples, Eigen::Inde
   return reflected(reflected(director, chord), samples.tangents.col(i + 1) - t);
 }
 
-}  // namespace dlo::inline test
+}  // namespace dlo::test

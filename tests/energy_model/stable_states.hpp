@@ -10,11 +10,12 @@
 #include <string>
 #include <vector>
 
+#include "../helpers.hpp"
 #include "base/minimise.hpp"
 #include "dlo/energy_model/energy.hpp"
 #include "dlo/energy_model/problem.hpp"
 
-namespace dlo::inline test {
+namespace dlo::test {
 
 /// Stable states of planar rods of unit length and stiffness, found by brute force: polygons are
 /// relaxed from many random shapes, and each is the initial guess of one refinement. No initial
@@ -209,4 +210,4 @@ class StableStates {
   std::mt19937 random_;
 };
 
-}  // namespace dlo::inline test
+}  // namespace dlo::test

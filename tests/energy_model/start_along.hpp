@@ -6,10 +6,11 @@
 #include <utility>
 #include <vector>
 
+#include "../helpers.hpp"
 #include "dlo/energy_model/equilibrium.hpp"
 #include "problems.hpp"
 
-namespace dlo::inline test {
+namespace dlo::test {
 
 /// Returns an initial guess of unit length along a line from corner to corner.
 inline energy_model::Equilibrium start_along(const std::vector<Eigen::Vector3d>& corners) {
@@ -52,4 +53,4 @@ inline energy_model::Equilibrium start_over_peg(double radius) {
   return start_along({{0, 0, 0}, {0.4 + radius, 0, 0}, {0.4 + radius, radius - 0.6, 0}});
 }
 
-}  // namespace dlo::inline test
+}  // namespace dlo::test

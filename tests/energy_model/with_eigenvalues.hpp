@@ -3,7 +3,9 @@
 #include <Eigen/Core>
 #include <Eigen/QR>
 
-namespace dlo::inline test {
+#include "../helpers.hpp"
+
+namespace dlo::test {
 
 /// Returns a symmetric matrix with these eigenvalues.
 inline Eigen::MatrixXd with_eigenvalues(const Eigen::VectorXd& eigenvalues) {
@@ -13,4 +15,4 @@ inline Eigen::MatrixXd with_eigenvalues(const Eigen::VectorXd& eigenvalues) {
   return Q * eigenvalues.asDiagonal() * Q.transpose();
 }
 
-}  // namespace dlo::inline test
+}  // namespace dlo::test

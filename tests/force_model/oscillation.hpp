@@ -3,11 +3,12 @@
 #include <Eigen/Eigenvalues>
 #include <cmath>
 
+#include "../helpers.hpp"
 #include "dlo/force_model/simulation.hpp"
 #include "dlo/force_model/tangent_stiffness.hpp"
 #include "rods.hpp"
 
-namespace dlo::inline test {
+namespace dlo::test {
 
 /// A nearly straight rod of few points that is released under a load so small that it stays linear:
 /// each mode is a damped oscillator, whose way is known.
@@ -69,4 +70,4 @@ struct Oscillation {
   }
 };
 
-}  // namespace dlo::inline test
+}  // namespace dlo::test

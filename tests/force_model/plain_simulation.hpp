@@ -6,11 +6,12 @@
 #include <limits>
 #include <utility>
 
+#include "../helpers.hpp"
 #include "dlo/force_model/rod.hpp"
 #include "dlo/force_model/step_size.hpp"
 #include "dlo/force_model/stepper.hpp"
 
-namespace dlo::inline test {
+namespace dlo::test {
 
 /// Steps written with total_forces and Eigen, as the formulas stand in the paper: what the kernel
 /// has to agree with and what its speed is compared with.
@@ -137,4 +138,4 @@ class PlainSimulation {
   bool block_open_ = false;
 };
 
-}  // namespace dlo::inline test
+}  // namespace dlo::test

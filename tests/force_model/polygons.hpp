@@ -3,7 +3,9 @@
 #include <Eigen/Geometry>
 #include <random>
 
-namespace dlo::inline test {
+#include "../helpers.hpp"
+
+namespace dlo::test {
 
 /// Returns the points of a random walk in space with moderate angles between its segments, whose
 /// lengths are `length` times 1 - length_spread to 1 + length_spread.
@@ -48,4 +50,4 @@ Eigen::Matrix3Xd difference_forces(const Energy& energy, Eigen::Matrix3Xd points
   return forces;
 }
 
-}  // namespace dlo::inline test
+}  // namespace dlo::test

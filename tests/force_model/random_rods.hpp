@@ -5,11 +5,12 @@
 #include <random>
 #include <tuple>
 
+#include "../helpers.hpp"
 #include "dlo/force_model/rod.hpp"
 #include "dlo/force_model/stepper.hpp"
 #include "polygons.hpp"
 
-namespace dlo::inline test {
+namespace dlo::test {
 
 using force_model::BendingLaw;
 using force_model::Grip;
@@ -78,4 +79,4 @@ inline StepOptions options_for(Stepper stepper, const Rod& rod) {
   return options;
 }
 
-}  // namespace dlo::inline test
+}  // namespace dlo::test

@@ -2,9 +2,10 @@
 
 #include <cmath>
 
+#include "../helpers.hpp"
 #include "dlo/force_model/rod.hpp"
 
-namespace dlo::inline test {
+namespace dlo::test {
 
 /// The paper's spring steel rod (Table 5), held at the origin, with points and weights as for
 /// compare::Bookkeeping::consistent.
@@ -41,4 +42,4 @@ struct SteelRod {
   }
 };
 
-}  // namespace dlo::inline test
+}  // namespace dlo::test

@@ -3,9 +3,10 @@
 #include <Eigen/Geometry>
 #include <cmath>
 
+#include "../helpers.hpp"
 #include "dlo/force_model/rod.hpp"
 
-namespace dlo::inline test {
+namespace dlo::test {
 
 /// A rod between two clamps that hold the middles of its end segments and the frame, the later one
 /// turned by `turn` about its direction from where d1 would be if the rod were straight.
@@ -56,4 +57,4 @@ struct TwistedRod {
   }
 };
 
-}  // namespace dlo::inline test
+}  // namespace dlo::test

@@ -11,7 +11,7 @@
 #include "dlo/compare/scene_file.hpp"
 #include "dlo/compare/solve.hpp"
 
-namespace dlo::inline test {
+namespace dlo::test {
 namespace {
 
 using compare::Scene;
@@ -118,4 +118,4 @@ TEST_F(SameVerdict, HasTheSameNumbersWhateverIsAllowed) {
 }
 
 }  // namespace
-}  // namespace dlo::inline test
+}  // namespace dlo::test

@@ -6,9 +6,10 @@
 #include <numbers>
 #include <vector>
 
+#include "../../helpers.hpp"
 #include "../rolled_chain.hpp"
 
-namespace dlo::inline test {
+namespace dlo::test {
 
 /// Points at rest of a hinged chain of a rod of 0.5 kg/m whose clamp points 20 degrees up; its
 /// springs are linear in the angle.
@@ -37,4 +38,4 @@ inline Eigen::Matrix3Xd hinged_chain(const std::vector<double>& lengths, double 
   return points;
 }
 
-}  // namespace dlo::inline test
+}  // namespace dlo::test

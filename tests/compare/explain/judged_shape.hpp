@@ -7,12 +7,13 @@
 #include <utility>
 #include <vector>
 
+#include "../../helpers.hpp"
 #include "../../says.hpp"
 #include "dlo/compare/explanation.hpp"
 #include "dlo/compare/reference.hpp"
 #include "dlo/compare/scene_file.hpp"
 
-namespace dlo::inline test {
+namespace dlo::test {
 
 /// Returns a rod of 0.5 kg/m whose clamp points 20 degrees upwards. @param rod  additional keys of
 /// the rod
@@ -86,4 +87,4 @@ inline void expect_named(const std::string& what, const compare::Scene& scene,
   EXPECT_LT(best.rms_m, left_m);
 }
 
-}  // namespace dlo::inline test
+}  // namespace dlo::test

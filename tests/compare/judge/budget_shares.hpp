@@ -1,8 +1,9 @@
 #pragma once
 
+#include "../../helpers.hpp"
 #include "dlo/compare/error_budget.hpp"
 
-namespace dlo::inline test {
+namespace dlo::test {
 
 /// Returns the sum of the shares of all parts of a budget, which is 1.
 inline double sum_of_shares(const compare::Budget& b) {
@@ -11,4 +12,4 @@ inline double sum_of_shares(const compare::Budget& b) {
          b.interaction.share;
 }
 
-}  // namespace dlo::inline test
+}  // namespace dlo::test

@@ -6,12 +6,13 @@
 #include <random>
 #include <vector>
 
+#include "../../helpers.hpp"
 #include "../measured_shapes.hpp"
 #include "dlo/compare/material_fit.hpp"
 #include "dlo/energy_model/energy.hpp"
 #include "polygon/energy_problems.hpp"
 
-namespace dlo::inline test {
+namespace dlo::test {
 
 using compare::Gripper;
 using compare::MeasuredShape;
@@ -81,4 +82,4 @@ inline Wire wire_of(unsigned seed, int count, int points = 50) {
   return wire;
 }
 
-}  // namespace dlo::inline test
+}  // namespace dlo::test
