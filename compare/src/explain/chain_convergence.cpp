@@ -44,15 +44,12 @@ constexpr double ratio_tolerance = 0.3;
 /// eighth then.
 constexpr int most_bisections = 3;
 
-/// Returns the arc lengths of the clamps that are between the points of a chain.
-std::vector<double> inner_middles(const Scene& scene, const std::vector<double>& points) {
-  std::vector<double> result;
-  for (const Gripper& gripper : scene.grippers) {
-    const bool is_at_point = std::ranges::any_of(
-        points, [&](double s) { return std::abs(gripper.at - s) < 1e-6 * scene.length; });
-    if (gripper.direction && !is_at_point) result.push_back(gripper.at);
-  }
-  return result;
+/// Returns the gripper at an arc length; null if there is none.
+const Gripper* gripper_at(const Scene& scene, double s) {
+  const auto found = std::ranges::find_if(scene.grippers, [&](const Gripper& gripper) {
+    return std::abs(gripper.at - s) < 1e-6 * scene.length;
+  });
+  return found == scene.grippers.end() ? nullptr : &*found;
 }
 
 /// Returns the arc lengths of the points of a chain with twice as many segments between any two
@@ -60,26 +57,22 @@ std::vector<double> inner_middles(const Scene& scene, const std::vector<double>&
 /// belongs to the span on either side: the new segments of that span are as long as if 2N - 1/2 of
 /// them made up the N - 1/2 old ones.
 std::vector<double> refined_arc_lengths(const Scene& scene, const OwnPolygon& chain) {
-  const std::vector<double>& points = chain.rest.arc_length;
-  std::vector<double> s = points;
-  for (const double at : inner_middles(scene, points)) {
-    s.insert(std::ranges::upper_bound(s, at), at);
+  std::vector<double> s = chain.rest.arc_length;
+  std::vector<double> middles;  // clamps between the points
+  for (const Gripper& gripper : scene.grippers) {
+    const bool is_at_point = std::ranges::any_of(
+        s, [&](double at) { return std::abs(gripper.at - at) < 1e-6 * scene.length; });
+    if (gripper.direction && !is_at_point) middles.push_back(gripper.at);
   }
+  for (const double at : middles) s.insert(std::ranges::upper_bound(s, at), at);
   const std::size_t n = s.size() - 1;
   const auto is_half = [&](std::size_t i) {
-    return chain.clamp == ChainClamp::middle &&
-           std::ranges::any_of(scene.grippers, [&](const Gripper& gripper) {
-             return gripper.direction && std::abs(gripper.at - s[i]) < 1e-6 * scene.length;
-           });
-  };
-  const auto is_held = [&](std::size_t i) {
-    return i == n || std::ranges::any_of(scene.grippers, [&](const Gripper& gripper) {
-             return std::abs(gripper.at - s[i]) < 1e-6 * scene.length;
-           });
+    const Gripper* const held = gripper_at(scene, s[i]);
+    return chain.clamp == ChainClamp::middle && held != nullptr && held->direction;
   };
   std::vector<double> result = {0};
   for (std::size_t begin = 0, end = 1; begin < n; begin = end++) {
-    while (!is_held(end)) ++end;
+    while (end < n && gripper_at(scene, s[end]) == nullptr) ++end;
     const double first = is_half(begin) ? 0.5 : 0;
     const double last = is_half(end) ? 0.5 : 0;
     // Segments are counted from the start of the first whole one.
@@ -97,7 +90,7 @@ std::vector<double> refined_arc_lengths(const Scene& scene, const OwnPolygon& ch
     result.insert(result.end(), inner.begin(), inner.end());
     result.push_back(s[end]);
   }
-  for (const double at : inner_middles(scene, points)) std::erase(result, at);
+  for (const double at : middles) std::erase(result, at);
   return result;
 }
 

@@ -7,32 +7,12 @@
 #include <utility>
 
 #include "base/number.hpp"
+#include "dlo/compare/error.hpp"
 #include "explain/segment_starts.hpp"
+#include "shape/curve.hpp"
 
 namespace dlo::compare {
 namespace {
-
-/// Describes why a shape is invalid; empty if it is valid. Points are counted from 1.
-std::string problem_of(const Shape& shape, double length) {
-  const std::vector<double>& s = shape.arc_length;
-  if (static_cast<Eigen::Index>(s.size()) != shape.points.cols() || s.size() < 2) {
-    return fmt::format("has {} points and {} arc lengths (allowed: as many, 2 or more)",
-                       shape.points.cols(), s.size());
-  }
-  for (std::size_t i = 0; i < s.size(); ++i) {
-    if (!shape.points.col(static_cast<Eigen::Index>(i)).allFinite()) {
-      return fmt::format("is not finite at point {}, s = {:g} m", i + 1, s[i]);
-    }
-    if (!on_rod(s[i], length)) {
-      return fmt::format("leaves the rod at point {}, s = {:.9g} m (allowed: 0 to {:.9g} m)", i + 1,
-                         s[i], length);
-    }
-    if (i > 0 && !(s[i] > s[i - 1])) {
-      return fmt::format("has arc lengths that do not grow at point {}, s = {:g} m", i + 1, s[i]);
-    }
-  }
-  return {};
-}
 
 std::string point_text(const Eigen::Vector3d& point) {
   const double large = point.norm();
@@ -46,11 +26,15 @@ ShapeNear near_by(const Shape& shape, const Scene& scene, ToleranceShare toleran
         fmt::format("tolerance of a shape = {}, must be > 0, a share of the {}", tolerance.share,
                     tolerance.of_deflection ? "deflection" : "length"));
   }
-  if (const std::string problem = problem_of(shape, scene.length); !problem.empty()) {
-    return {false, "the shape " + problem};
+  MeasuredShape measured;
+  try {
+    measured = shape_of(shape.points, shape.arc_length, "the shape");
+    (void)file_arc_lengths(measured, scene.length);
+  } catch (const InputError& error) {
+    return {false, error.what()};
   }
   const CheckResult result =
-      check(scene, shape_of(shape.points, shape.arc_length, "shape"),
+      check(scene, measured,
             {.tolerance =
                  ShapeTolerance{.allowed_m = tolerance.share * scene.length,
                                 .largest = largest,

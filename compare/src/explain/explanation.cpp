@@ -12,6 +12,7 @@
 #include "dlo/compare/error.hpp"
 #include "dlo/compare/reference.hpp"
 #include "dlo/energy_model/interrupt.hpp"
+#include "explain/cause_limits.hpp"
 #include "explain/chain_convergence.hpp"
 #include "explain/file_causes.hpp"
 #include "explain/own_polygon.hpp"
@@ -25,25 +26,20 @@ namespace {
 
 using energy_model::JointLaw;
 
-/// Largest part of the deviation that an explanation may leave.
-constexpr double most_left = 0.5;
-/// Part of the remaining deviation that each additional number must remove.
-constexpr double worth_of_a_number = 0.5;
-/// Deviations below this share of the deviation to explain, or of the length, count as equal.
-constexpr double same_share = 0.02;
-constexpr double same_length = 1e-5;
-/// Deviation, divided by the length, above which a shape is simply another one.
-constexpr double another_shape = 0.05;
-/// Distance out of plane, divided by the length, above which a rod has left its plane.
-constexpr double another_shape_out = 1e-3;
+namespace limits = cause_limits;
+
+/// Returns the deviation up to which deviations count as equal [m].
+double equal_deviation(double before, double length) {
+  return std::max(limits::same_share * std::min(before, limits::another_shape * length),
+                  limits::same_length * length);
+}
 
 /// Returns a price that combines the remaining deviation with the number of fitted numbers; smaller
 /// is better. Remaining deviations below the limit of equality count as that limit.
 /// @param before  deviation to explain [m];  @param length  of the rod [m]
 double price_of(double rms, int numbers, double before, double length) {
-  const double same =
-      std::max(same_share * std::min(before, another_shape * length), same_length * length);
-  return std::max(rms, same) * std::pow(1 / worth_of_a_number, std::max(0, numbers));
+  return std::max(rms, equal_deviation(before, length)) *
+         std::pow(1 / limits::worth_of_a_number, std::max(0, numbers));
 }
 
 /// Returns a shape with a straight extension of its last segment as last point.
@@ -72,30 +68,29 @@ class Search {
   }
 
   [[nodiscard]] std::vector<Explanation> run() {
-    const energy_model::Equilibrium& rod = check_.rod;
     before_ = check_.whole_rms_m;
     // Without a deviation the check fails only because too little of the rod is observed.
-    if (!(before_ > same_length * scene_.length)) return {};
+    if (!(before_ > limits::same_length * scene_.length)) return {};
     if (options_.pose == PoseFreedom::known) {
-      for (const FileCause& cause : file_causes(scene_, shape_, check_)) look_at(cause);
+      try_single_errors(scene_, shape_, check_, [this](const FileCause& one) { look_at(one); });
     }
     // The smoothed shape is compared with the rod at the points of the file.
     const auto noise = noise_of_points(check_.alignment.shape, check_.rod);
-    if (noise && noise->rms_m <= most_left * check_.deviation.rms_m) add(*noise);
+    if (noise && noise->rms_m <= limits::check_left * check_.deviation.rms_m) add(*noise);
     look_at_unstable();
     if (!is_found(0)) look_at_chains(Springs::as_the_rod);
     if (!is_found(1) && options_.pose == PoseFreedom::known) {
-      look_at_joint_causes(scene_, shape_, check_.stretched_length_m,
-                           [this](const FileCause& cause) { look_at(cause); });
+      try_joint_errors(scene_, shape_, check_.stretched_length_m,
+                       [this](const FileCause& one) { look_at(one); });
       look_at_chains_said_rightly();
     }
     for (const SceneCause& cause :
          scene_causes(scene_, check_.alignment.shape, length_of_shape(), lies_in_plane())) {
       const auto numbers = static_cast<int>(cause.start.size());
-      if (numbers <= most_numbers_ && !is_found(numbers) && !is_over()) fit(cause, rod);
+      if (numbers <= most_numbers_ && !is_found(numbers) && !is_over()) fit(cause);
     }
     if (!is_found(1)) look_at_chains(Springs::fitted);
-    if (!is_found(1)) look_at_paper_chains();
+    if (!is_found(1)) look_at_chains(Springs::fitted, JointLaw::paper);
     std::stable_sort(found_.begin(), found_.end(), [this](const auto& a, const auto& b) {
       return price(a.first) < price(b.first);
     });
@@ -150,44 +145,37 @@ class Search {
            (lacks_end ? ", its last end missing as in MuJoCo's xpos" : "");
   }
 
-  void look_at_chains(Springs springs) {
+  /// Adds the chains that may have the points of the shape. @param law  as own_polygons(); the
+  /// shape of a chain with the paper's law depends on its number of segments
+  void look_at_chains(Springs springs, std::optional<JointLaw> law = std::nullopt) {
+    constexpr double stretch = 1e-6;  // strain of a chain's segments; fits are not more accurate
     const Shape& shape = check_.alignment.shape;
-    for (const OwnPolygon& chain : chains_of(shape, springs)) {
+    for (const OwnPolygon& chain : chains_of(shape, springs, law)) {
       const std::string words = words_of(chain, shape);
-      if (springs == Springs::as_the_rod) {
-        // Discretisation is the cause only if the chain converges to the rod.
-        if (!(chain.rms_m <= most_left * before_) ||
-            chain_convergence(scene_, chain, check_.rod, false).error ==
-                ChainError::another_shape) {
-          continue;
-        }
-        add({words + and_springs(chain), chain.rms_m, 0, ExplanationKind::discretisation,
-             chain.max_m},
-            words);
-      } else {
-        const std::string law = law_words(chain);
+      if (law) {
+        add({fmt::format("it is {}, with the paper's joint law, c_b = {:.3g} N, which does not "
+                         "converge to the rod",
+                         words, chain.paper_stiffness),
+             std::max(chain.rms_m, stretch * scene_.length), 1, ExplanationKind::scene},
+            "the paper's joint law");
+      } else if (springs == Springs::fitted) {
+        const std::string own_law = law_words(chain);
         const std::string weight =
             is_pulled_by_weight_alone(scene_)
                 ? fmt::format(", or the weight {:.3g} times", 1 / chain.stiffness)
                 : "";
         add({fmt::format("it is {}, with springs of {:.3g} times EI/h{}{}{}", words,
-                         chain.stiffness, law.empty() ? "" : ", ", law, weight),
+                         chain.stiffness, own_law.empty() ? "" : ", ", own_law, weight),
              chain.rms_m, 1, ExplanationKind::scene},
             words);
+      } else if (chain.rms_m <= limits::check_left * before_ &&
+                 chain_convergence(scene_, chain, check_.rod, false).error !=
+                     ChainError::another_shape) {
+        // Discretisation is the cause only if the chain converges to the rod.
+        add({words + and_springs(chain), chain.rms_m, 0, ExplanationKind::discretisation,
+             chain.max_m},
+            words);
       }
-    }
-  }
-
-  /// Adds the chain with the paper's joint law, whose shape depends on its number of segments.
-  void look_at_paper_chains() {
-    constexpr double stretch = 1e-6;  // strain of a chain's segments; fits are not more accurate
-    const Shape& shape = check_.alignment.shape;
-    for (const OwnPolygon& chain : chains_of(shape, Springs::fitted, JointLaw::paper)) {
-      add({fmt::format("it is {}, with the paper's joint law, c_b = {:.3g} N, which does not "
-                       "converge to the rod",
-                       words_of(chain, shape), chain.paper_stiffness),
-           std::max(chain.rms_m, stretch * scene_.length), 1, ExplanationKind::scene},
-          "the paper's joint law");
     }
   }
 
@@ -205,7 +193,7 @@ class Search {
   [[nodiscard]] bool lies_in_plane() const {
     const std::optional<Eigen::Vector3d> normal = scene_.plane_normal();
     if (!normal) return false;
-    return out_of_plane(*normal, check_.alignment.shape.points) < same_share * before_;
+    return out_of_plane(*normal, check_.alignment.shape.points) < limits::same_share * before_;
   }
 
   [[nodiscard]] double price(const Explanation& explanation) const {
@@ -215,7 +203,7 @@ class Search {
   /// @param same_as  name of a group of causes of which only the best is reported; empty: the cause
   /// itself
   void add(Explanation explanation, std::string same_as = {}) {
-    if (!(explanation.rms_m <= most_left * before_)) return;
+    if (!(explanation.rms_m <= limits::check_left * before_)) return;
     if (explanation.numbers > most_numbers_) return;
     if (!best_ || price(explanation) < price(*best_)) best_ = explanation;
     if (same_as.empty()) same_as = explanation.cause;
@@ -239,8 +227,9 @@ class Search {
     if (!std::isfinite(least)) return;
     const std::optional<Eigen::Vector3d> normal = scene_.plane_normal();
     const double out = normal ? out_of_plane(*normal, check_.reference.points) : 0;
-    const bool left_plane = normal && out > another_shape_out * scene_.length &&
-                            out_of_plane(*normal, check_.alignment.shape.points) < same_share * out;
+    const bool left_plane =
+        normal && out > limits::out_of_plane * scene_.length &&
+        out_of_plane(*normal, check_.alignment.shape.points) < limits::same_share * out;
     add({left_plane
              ? fmt::format("the file stays in the scene's plane, as a planar model does: the rod "
                            "is unstable there and leaves the plane by up to {:.3g} mm",
@@ -283,7 +272,7 @@ class Search {
       // If points are omitted, they must have caused the deviation: the others must be near the
       // rod.
       if (cause.part && cause.shape.points.cols() < shape_.points.cols() &&
-          !(measured.rms_m <= most_left * check_.deviation.rms_m)) {
+          !(measured.rms_m <= limits::check_left * check_.deviation.rms_m)) {
         return;
       }
       if (!cause.part) {
@@ -291,7 +280,7 @@ class Search {
       }
       const double price_of_this = price(explanation);
       const bool has_all_points = cause.shape.points.cols() == shape_.points.cols();
-      if (has_all_points && explanation.rms_m <= most_left * before_ &&
+      if (has_all_points && explanation.rms_m <= limits::check_left * before_ &&
           (!said_rightly_ || price_of_this < said_rightly_->price)) {
         said_rightly_ = {explanation.cause, laid.shape, explanation.numbers, price_of_this};
       }
@@ -325,14 +314,13 @@ class Search {
     return whole_of(measure(laid, rod.sample, scene.length), laid, rod.sample, scene.length).rms_m;
   }
 
-  void fit(const SceneCause& cause, const energy_model::Equilibrium& rod) {
-    const double noise = std::max(same_share * std::min(before_, another_shape * scene_.length),
-                                  same_length * scene_.length);
+  void fit(const SceneCause& cause) {
     try {
-      const std::optional<FittedCause> found =
-          fit_cause(cause, shape_, rod, options_, {noise, timer_});
+      const std::optional<FittedCause> found = fit_cause(
+          cause, shape_, check_.rod, options_, equal_deviation(before_, scene_.length), timer_);
       if (!found) return;
-      add({cause.words(found->numbers), rms_of(cause.changed(found->numbers), found->rod),
+      const Scene changed = cause.changed(found->numbers);
+      add({cause.words(changed, found->numbers), rms_of(changed, found->rod),
            static_cast<int>(found->numbers.size()), ExplanationKind::scene},
           cause.same_as);
     } catch (const ResultError&) {

@@ -26,9 +26,16 @@ constexpr NamedUnit named_units[] = {{"metres", 1}, {"mm", 1e-3},       {"cm", 1
                                      {"um", 1e-6},  {"inches", 0.0254}, {"feet", 0.3048},
                                      {"km", 1e3}};
 
-/// Range of the length of a file's polyline, divided by the rod's, for which a unit is considered.
+/// Range of the length of a file's polyline, divided by the rod's, for which a unit is considered
+/// together with other errors.
 constexpr double shortest = 0.5;
 constexpr double longest = 1.25;
+
+/// A unit that a file may be in, other than the one in which it was read.
+struct FileUnit {
+  std::string words;  ///< a clause: "the file is in mm, not in metres"
+  double factor = 1;  ///< factor that converts the shape to metres
+};
 
 /// Returns the units that the shape may be in, other than the one in which it was read.
 std::vector<FileUnit> other_units(const MeasuredShape& shape) {
@@ -44,42 +51,6 @@ std::vector<FileUnit> other_units(const MeasuredShape& shape) {
                      unit.metres / shape.unit});
   }
   return units;
-}
-
-/// Returns the units in which the shape is about as long as the rod or a part of it, with their
-/// factors; the unit in which the file was read has an empty name.
-std::vector<std::pair<std::string, double>> units_for(const MeasuredShape& shape, double length) {
-  const double share = lengths_along(shape.points).back() / length;
-  std::vector<std::pair<std::string, double>> units;
-  const auto add = [&](const std::string& words, double metres) {
-    if (share * metres > shortest && share * metres < longest) units.emplace_back(words, metres);
-  };
-  add("", 1);
-  for (const FileUnit& unit : other_units(shape)) add(unit.words, unit.factor);
-  return units;
-}
-
-/// Calls `look` for each combination of errors of a file: this unit and these axes, which may be
-/// right or wrong, with or without missing ends, and with or without a translation. Combinations of
-/// fewer than two errors are skipped.
-void look_at_poses(const std::string& unit, const FileAxes& axes, const MeasuredShape& in_metres,
-                   bool lacks_ends, const std::function<void(const FileCause&)>& look) {
-  const int changed = (unit.empty() ? 0 : 1) + (axes.words.empty() ? 0 : 1);
-  const char* const both = changed == 2 ? ", and " : "";
-  for (const bool part : {false, true}) {
-    if (part && !lacks_ends) continue;
-    for (const PoseFreedom pose : {PoseFreedom::known, PoseFreedom::translation}) {
-      const int moved = pose == PoseFreedom::translation ? 1 : 0;
-      const int faults = changed + (part ? 1 : 0) + moved;
-      if (faults < 2) continue;
-      look({.words = unit + both + axes.words,
-            .shape = turned(in_metres, axes.axes),
-            .pose = pose,
-            .numbers = faults - 1 + moved,
-            .part = part,
-            .same_as = joint_cause});
-    }
-  }
 }
 
 constexpr std::array axis_names = {"x", "y", "z"};
@@ -140,6 +111,46 @@ std::vector<Eigen::Matrix3d> signed_permutations() {
   return all;
 }
 
+/// Axes that a file may have instead of the scene's.
+struct FileAxes {
+  Eigen::Matrix3d axes;  ///< from the file's coordinates to the scene's: signed permutation
+  std::string words;     ///< a clause: "z is up in the file (the scene's y is the file's z, ..)"
+};
+
+/// Returns all axes with which the points differ from those in the scene's axes and in any axes
+/// listed before, by more than 1e-9 of their extent. Those with the fewest changes come first, and
+/// among exchanged axes proper rotations come before mirror images.
+/// @param points  in the file's axes, 3 x M
+std::vector<FileAxes> other_axes(const Eigen::Vector3d& gravity, const Eigen::Matrix3Xd& points) {
+  constexpr double rounding = 1e-9;
+  const double extent = points.cwiseAbs().maxCoeff();
+  std::vector<FileAxes> result;
+  std::vector<Eigen::Matrix3Xd> told = {points};
+  for (const Eigen::Matrix3d& axes : signed_permutations()) {
+    Eigen::Matrix3Xd said = axes * points;
+    const bool is_told = std::ranges::any_of(told, [&](const Eigen::Matrix3Xd& other) {
+      return (said - other).cwiseAbs().maxCoeff() <= rounding * extent;
+    });
+    if (is_told) continue;
+    told.push_back(std::move(said));
+    result.push_back({axes, fmt::format("{} ({})", name_of(axes, gravity), axes_text(axes))});
+  }
+  return result;
+}
+
+/// Returns the shape with its points and arc lengths multiplied by a factor.
+MeasuredShape scaled(MeasuredShape shape, double factor) {
+  shape.points *= factor;
+  for (double& s : shape.arc_length) s *= factor;
+  return shape;
+}
+
+/// Returns the shape in other axes.
+MeasuredShape turned(MeasuredShape shape, const Eigen::Matrix3d& axes) {
+  shape.points = (axes * shape.points).eval();
+  return shape;
+}
+
 MeasuredShape without(const MeasuredShape& shape, Eigen::Index first, Eigen::Index count) {
   MeasuredShape rest = shape;
   rest.points = shape.points.middleCols(first, count);
@@ -148,6 +159,46 @@ MeasuredShape without(const MeasuredShape& shape, Eigen::Index first, Eigen::Ind
                            shape.arc_length.begin() + first + count);
   }
   return rest;
+}
+
+/// Whether a polyline is shorter than 99 % of the rod.
+bool is_short(double polyline_length, double length) { return polyline_length < 0.99 * length; }
+
+/// Calls `take` for each of these errors of a file, or for each combination of several ones: its
+/// unit, its axes, its origin and, in combinations, missing ends. Each error after the first counts
+/// as one number, and another origin as one more.
+/// @param length  length of the rod's axis, with stretch [m]
+void combine_errors(const Scene& scene, const MeasuredShape& shape, double length, bool several,
+                    const TakeFileCause& take) {
+  std::vector<FileAxes> all_axes = other_axes(scene.gravity, shape.points);
+  all_axes.insert(all_axes.begin(), {Eigen::Matrix3d::Identity(), ""});
+  std::vector<FileUnit> units = other_units(shape);
+  units.insert(units.begin(), {"", 1});
+  const double share = lengths_along(shape.points).back() / length;
+  for (const FileUnit& unit : units) {
+    const double covered = share * unit.factor;
+    if (several && !(covered > shortest && covered < longest)) continue;
+    const MeasuredShape in_metres = scaled(shape, unit.factor);
+    for (const FileAxes& axes : all_axes) {
+      const int changed = (unit.words.empty() ? 0 : 1) + (axes.words.empty() ? 0 : 1);
+      for (const bool part : {false, true}) {
+        for (const PoseFreedom pose : {PoseFreedom::known, PoseFreedom::translation}) {
+          const int moved = pose == PoseFreedom::translation ? 1 : 0;
+          const int errors = changed + (part ? 1 : 0) + moved;
+          if (errors == 0 || several != (errors > 1)) continue;
+          if (part && !(several && is_short(covered, 1))) continue;
+          take({.words = unit.words + (changed == 2 ? ", and " : "") + axes.words,
+                .shape = turned(in_metres, axes.axes),
+                .pose = pose,
+                .numbers = errors - 1 + moved,
+                .part = part,
+                .same_as = several              ? joint_cause
+                           : axes.words.empty() ? ""
+                                                : "axes"});
+        }
+      }
+    }
+  }
 }
 
 /// Returns the transformation from the axes of a picture to the scene's.
@@ -164,19 +215,17 @@ Eigen::Matrix3d picture_axes(const Eigen::Vector3d& gravity, double up) {
 }
 
 /// Adds pixel coordinates: of any scale, counted from a corner, often downwards.
-void add_pixels(const Scene& scene, const MeasuredShape& shape, std::vector<FileCause>& causes) {
+void add_pixels(const Scene& scene, const MeasuredShape& shape, const TakeFileCause& take) {
   const double per_unit = scene.length / lengths_along(shape.points).back();
   constexpr double another_scale = 0.1;
   if (!(std::abs(std::log(per_unit)) > another_scale)) return;
   for (const double up : {-1.0, 1.0}) {
-    FileCause cause;
-    cause.words = fmt::format("the file is in pixels of {:.4g} mm, y {}", per_unit * 1e3,
-                              up < 0 ? "down" : "up");
-    cause.shape = turned(scaled(shape, per_unit), picture_axes(scene.gravity, up));
-    cause.pose = PoseFreedom::translation;
-    cause.numbers = 3;  // the scale, the axes and the origin
-    cause.same_as = "pixels";
-    causes.push_back(std::move(cause));
+    take({.words = fmt::format("the file is in pixels of {:.4g} mm, y {}", per_unit * 1e3,
+                               up < 0 ? "down" : "up"),
+          .shape = turned(scaled(shape, per_unit), picture_axes(scene.gravity, up)),
+          .pose = PoseFreedom::translation,
+          .numbers = 3,  // the scale, the axes and the origin
+          .same_as = "pixels"});
   }
 }
 
@@ -203,8 +252,7 @@ std::pair<double, std::vector<Eigen::Index>> way_from(Eigen::Index start,
 
 /// Adds another order of the points, if the shortest greedy path through them is clearly shorter
 /// than the file's polyline.
-void add_order(const MeasuredShape& shape, const ShapeCheck& check,
-               std::vector<FileCause>& causes) {
+void add_order(const MeasuredShape& shape, const ShapeCheck& check, const TakeFileCause& take) {
   constexpr Eigen::Index most_points = 300;
   constexpr double clearly_shorter = 0.95;
   const Eigen::Index count = shape.points.cols();
@@ -227,41 +275,35 @@ void add_order(const MeasuredShape& shape, const ShapeCheck& check,
     if (i < most_told) numbers += fmt::format("{}{}", i == 0 ? "" : ", ", from + 1);
   }
   if (count > most_told) numbers += ", ..";
-  causes.push_back(
-      {fmt::format("the file's points are out of order: along the rod they are {}", numbers),
-       std::move(sorted)});
+  take({fmt::format("the file's points are out of order: along the rod they are {}", numbers),
+        std::move(sorted)});
 }
-
-/// Whether a polyline is shorter than 99 % of the rod.
-bool is_short(double polyline_length, double length) { return polyline_length < 0.99 * length; }
 
 /// Adds points at an end that lead away from the rod, and a file that covers only a part of the
 /// rod.
-void add_lengths(const MeasuredShape& shape, const ShapeCheck& check,
-                 std::vector<FileCause>& causes) {
+void add_lengths(const MeasuredShape& shape, const ShapeCheck& check, const TakeFileCause& take) {
   const std::vector<double>& s = check.reference.arc_length;
   // A shorter part lies close to the rod for almost any file.
   constexpr double least_part = 0.05;
   const double part = s.back() - s.front();
   if (is_short(part, check.length_m) && part > least_part * check.length_m &&
       is_short(check.polyline_length_m, check.stretched_length_m)) {
-    causes.push_back({"", shape, PoseFreedom::known, 0, true});
+    take({"", shape, PoseFreedom::known, 0, true});
   }
   const Eigen::Index count = shape.points.cols();
   const Eigen::Index most = std::min<Eigen::Index>(3, count - 3);
   for (Eigen::Index k = 1; k <= most; ++k) {
     const std::string points = k == 1 ? "point leads" : fmt::format("{} points lead", k);
-    causes.push_back({fmt::format("the file's last {} away from the rod: a hook", points),
-                      without(shape, 0, count - k), PoseFreedom::known, 0, true, "last points"});
-    causes.push_back({fmt::format("the file's first {} away from the rod: a hook", points),
-                      without(shape, k, count - k), PoseFreedom::known, 0, true, "first points"});
+    take({fmt::format("the file's last {} away from the rod: a hook", points),
+          without(shape, 0, count - k), PoseFreedom::known, 0, true, "last points"});
+    take({fmt::format("the file's first {} away from the rod: a hook", points),
+          without(shape, k, count - k), PoseFreedom::known, 0, true, "first points"});
   }
 }
 
 /// Adds the scale that makes the file as long as the rod, about the file's origin and about the
 /// rod's first point, which an extension of the rod leaves where it is.
-void add_scale(const MeasuredShape& shape, const ShapeCheck& check,
-               std::vector<FileCause>& causes) {
+void add_scale(const MeasuredShape& shape, const ShapeCheck& check, const TakeFileCause& take) {
   constexpr double same = 1e-3;
   const double stretch = check.polyline_length_m / check.stretched_length_m;
   if (!(stretch > 0) || std::abs(stretch - 1) <= same) return;
@@ -281,7 +323,7 @@ void add_scale(const MeasuredShape& shape, const ShapeCheck& check,
     // A strain about the first point follows from the file's length and counts as no number. Other
     // scales count as one number, so that a named unit, which counts as none, is preferred.
     const int numbers = may_be_strain && about_first ? 0 : 1;
-    causes.push_back({words, std::move(right), PoseFreedom::known, numbers, false, "scale"});
+    take({words, std::move(right), PoseFreedom::known, numbers, false, "scale"});
   }
 }
 
@@ -298,7 +340,7 @@ Eigen::Matrix3d nearest_rotation(const Eigen::Matrix3Xd& from, const Eigen::Matr
 
 /// Adds the rotation of the file about each gripper that brings it nearest to the rod.
 void add_rotations(const Scene& scene, const MeasuredShape& shape, const ShapeCheck& check,
-                   std::vector<FileCause>& causes) {
+                   const TakeFileCause& take) {
   const Eigen::Matrix3Xd& points = check.alignment.shape.points;
   std::vector<double> s = check.alignment.shape.arc_length;
   // Nearest points on the rod are biased if the file is rotated; lengths along the file are not.
@@ -314,56 +356,21 @@ void add_rotations(const Scene& scene, const MeasuredShape& shape, const ShapeCh
         nearest_rotation(points.colwise() - centre, rod.colwise() - centre);
     // The rotation back from the corrected shape to the file is the error that is reported.
     const Eigen::AngleAxisd error(rotation.transpose());
-    FileCause cause;
-    cause.words = fmt::format("the file is rotated by {:.3g} deg about gripper {}",
-                              error.angle() * 180 / std::numbers::pi, i + 1);
-    cause.shape = shape;
-    cause.shape.points = ((rotation * (shape.points.colwise() - centre)).colwise() + centre).eval();
-    cause.numbers = 3;  // the rotation vector, in any plane
-    cause.same_as = "rotated file";
-    causes.push_back(std::move(cause));
+    MeasuredShape right = shape;
+    right.points = ((rotation * (shape.points.colwise() - centre)).colwise() + centre).eval();
+    take({.words = fmt::format("the file is rotated by {:.3g} deg about gripper {}",
+                               error.angle() * 180 / std::numbers::pi, i + 1),
+          .shape = std::move(right),
+          .numbers = 3,  // the rotation vector, in any plane
+          .same_as = "rotated file"});
   }
 }
 
 }  // namespace
 
-void look_at_joint_causes(const Scene& scene, const MeasuredShape& shape, double length,
-                          const std::function<void(const FileCause&)>& look) {
-  std::vector<FileAxes> all_axes = other_axes(scene.gravity, shape.points);
-  all_axes.insert(all_axes.begin(), {Eigen::Matrix3d::Identity(), ""});
-  for (const auto& [unit, metres] : units_for(shape, length)) {
-    const MeasuredShape in_metres = scaled(shape, metres);
-    const bool lacks_ends = is_short(lengths_along(in_metres.points).back(), length);
-    for (const FileAxes& axes : all_axes) look_at_poses(unit, axes, in_metres, lacks_ends, look);
-  }
-}
-
-std::vector<FileAxes> other_axes(const Eigen::Vector3d& gravity, const Eigen::Matrix3Xd& points) {
-  constexpr double rounding = 1e-9;
-  const double extent = points.cwiseAbs().maxCoeff();
-  std::vector<FileAxes> result;
-  std::vector<Eigen::Matrix3Xd> told = {points};
-  for (const Eigen::Matrix3d& axes : signed_permutations()) {
-    Eigen::Matrix3Xd said = axes * points;
-    const bool is_told = std::ranges::any_of(told, [&](const Eigen::Matrix3Xd& other) {
-      return (said - other).cwiseAbs().maxCoeff() <= rounding * extent;
-    });
-    if (is_told) continue;
-    told.push_back(std::move(said));
-    result.push_back({axes, fmt::format("{} ({})", name_of(axes, gravity), axes_text(axes))});
-  }
-  return result;
-}
-
-MeasuredShape scaled(MeasuredShape shape, double factor) {
-  shape.points *= factor;
-  for (double& s : shape.arc_length) s *= factor;
-  return shape;
-}
-
-MeasuredShape turned(MeasuredShape shape, const Eigen::Matrix3d& axes) {
-  shape.points = (axes * shape.points).eval();
-  return shape;
+void try_joint_errors(const Scene& scene, const MeasuredShape& shape, double length,
+                      const TakeFileCause& take) {
+  combine_errors(scene, shape, length, true, take);
 }
 
 std::string missing_words(const std::vector<double>& s, const Eigen::Matrix3Xd& points,
@@ -387,28 +394,19 @@ std::string origin_words(const Eigen::Vector3d& way) {
                      shown(mm.x(), large), shown(mm.y(), large), shown(mm.z(), large));
 }
 
-std::vector<FileCause> file_causes(const Scene& scene, const MeasuredShape& shape,
-                                   const ShapeCheck& check) {
-  std::vector<FileCause> causes;
-  for (const FileAxes& other : other_axes(scene.gravity, shape.points)) {
-    causes.push_back({other.words, turned(shape, other.axes)});
-    causes.back().same_as = "axes";
-  }
+void try_single_errors(const Scene& scene, const MeasuredShape& shape, const ShapeCheck& check,
+                       const TakeFileCause& take) {
+  combine_errors(scene, shape, check.stretched_length_m, false, take);
   if (!shape.arc_length.empty()) {
     MeasuredShape against = shape;
     for (double& s : against.arc_length) s = check.length_m - s;
-    causes.push_back({"the file's arc lengths count from the other end", against});
+    take({"the file's arc lengths count from the other end", against});
   }
-  causes.push_back({"", shape, PoseFreedom::translation, 1});
-  for (const FileUnit& unit : other_units(shape)) {
-    causes.push_back({unit.words, scaled(shape, unit.factor)});
-  }
-  add_pixels(scene, shape, causes);
-  add_order(shape, check, causes);
-  add_lengths(shape, check, causes);
-  add_scale(shape, check, causes);
-  add_rotations(scene, shape, check, causes);
-  return causes;
+  add_pixels(scene, shape, take);
+  add_order(shape, check, take);
+  add_lengths(shape, check, take);
+  add_scale(shape, check, take);
+  add_rotations(scene, shape, check, take);
 }
 
 std::optional<Explanation> noise_of_points(const Shape& shape,

@@ -14,19 +14,6 @@
 
 namespace dlo::compare {
 
-/// Axes that a file may have instead of the scene's.
-struct FileAxes {
-  Eigen::Matrix3d axes;  ///< from the file's coordinates to the scene's: signed permutation
-  std::string words;     ///< a clause: "z is up in the file (the scene's y is the file's z, ..)"
-};
-
-/// Returns all axes with which the points differ from those in the scene's axes and in any axes
-/// listed before, by more than 1e-9 of their extent. Those with the fewest changes come first, and
-/// among exchanged axes proper rotations come before mirror images.
-/// @param points  in the file's axes, 3 x M
-[[nodiscard]] std::vector<FileAxes> other_axes(const Eigen::Vector3d& gravity,
-                                               const Eigen::Matrix3Xd& points);
-
 /// A possible error of a file that contains a correct shape.
 struct FileCause {
   std::string words;    ///< a clause; empty if alignment of the shape determines the whole error
@@ -40,16 +27,8 @@ struct FileCause {
   std::string same_as = {};
 };
 
-/// A unit that a file may be in, other than the one in which it was read.
-struct FileUnit {
-  std::string words;  ///< a clause: "the file is in mm, not in metres"
-  double factor = 1;  ///< factor that converts the shape to metres
-};
-
-/// Returns the shape with its points and arc lengths multiplied by a factor.
-[[nodiscard]] MeasuredShape scaled(MeasuredShape shape, double factor);
-/// Returns the shape in other axes.
-[[nodiscard]] MeasuredShape turned(MeasuredShape shape, const Eigen::Matrix3d& axes);
+/// Receives a possible error of a file.
+using TakeFileCause = std::function<void(const FileCause&)>;
 
 /// Returns a clause that states which ends of the rod a shape lacks.
 /// @param s  arc lengths of the points on the rod [m];  @param points  [m], 3 x M
@@ -60,9 +39,9 @@ struct FileUnit {
 /// @param way  displacement from the file's points to the scene's [m]
 [[nodiscard]] std::string origin_words(const Eigen::Vector3d& way);
 
-/// Returns all possible single errors of a file whose frame is stated to be the scene's.
-[[nodiscard]] std::vector<FileCause> file_causes(const Scene& scene, const MeasuredShape& shape,
-                                                 const ShapeCheck& check);
+/// Calls `take` for all possible single errors of a file whose frame is stated to be the scene's.
+void try_single_errors(const Scene& scene, const MeasuredShape& shape, const ShapeCheck& check,
+                       const TakeFileCause& take);
 
 /// Returns the explanation that the points are noisy, with the deviation that remains without the
 /// noise. The noise of neighbours is independent, so little of it is left in their mean. Returns
@@ -73,10 +52,10 @@ struct FileUnit {
 /// Group name (FileCause::same_as) of combinations of several errors.
 inline constexpr const char* joint_cause = "several";
 
-/// Calls `look` for all combinations of several errors of a file: its unit, axes, origin and
+/// Calls `take` for all combinations of several errors of a file: its unit, axes, origin and
 /// missing ends. Each error after the first counts as one number, and another origin as one more.
 /// @param length  length of the rod's axis, with stretch [m]
-void look_at_joint_causes(const Scene& scene, const MeasuredShape& shape, double length,
-                          const std::function<void(const FileCause&)>& look);
+void try_joint_errors(const Scene& scene, const MeasuredShape& shape, double length,
+                      const TakeFileCause& take);
 
 }  // namespace dlo::compare

@@ -12,6 +12,7 @@
 #include "dlo/compare/error.hpp"
 #include "dlo/energy_model/polygon.hpp"
 #include "dlo/obstacle/body.hpp"
+#include "polygon/shape_loads.hpp"
 #include "scene/scene_problem.hpp"
 #include "shape/curve.hpp"
 #include "solve/held_frames.hpp"
@@ -312,25 +313,11 @@ class Chain {
       if (is_clamped_at_start_) problem_.stiffnesses[0] *= whole(0, 1);
       if (is_clamped_at_end_) problem_.stiffnesses[n - 2] *= whole(n - 1, n - 2);
     }
-    problem_.node_forces.setZero(3, n + 1 + before_ + after_);
+    const PointForces forces = forces_on_points(scene_, s_);
     weights_.setZero(3, n + 1 + before_ + after_);
-    for (Eigen::Index i = 0; i <= n; ++i) {
-      const double at = s_[static_cast<std::size_t>(i)];
-      const double begin = i == 0 ? 0 : at - inner_[i - 1] / 2;
-      const double end = i == n ? l : at + inner_[i] / 2;
-      weights_.col(i + before_) = scene_.weight_between(begin, std::min(l, end));
-      problem_.node_forces.col(i + before_) =
-          weights_.col(i + before_) + scene_.distributed_between(begin, std::min(l, end));
-    }
-    for (const PointLoad& load : scene_.loads) {
-      // A load between two points acts on both by the lever rule, as in discretise().
-      const Eigen::Index right =
-          std::upper_bound(s_.begin() + 1, s_.end() - 1, load.at) - s_.begin();
-      const double left_at = s_[static_cast<std::size_t>(right - 1)];
-      const double share = std::clamp((load.at - left_at) / inner_[right - 1], 0.0, 1.0);
-      problem_.node_forces.col(right - 1 + before_) += (1 - share) * load.force;
-      problem_.node_forces.col(right + before_) += share * load.force;
-    }
+    weights_.middleCols(before_, n + 1) = forces.weights;
+    problem_.node_forces = weights_;
+    problem_.node_forces.middleCols(before_, n + 1) += forces.loads;
     const Eigen::VectorXd h = whole_lengths();
     for (const std::size_t i : obstacles_in_reach(scene_)) {
       const Obstacle& obstacle = scene_.obstacles[i];

@@ -74,7 +74,7 @@ SceneCause stiffness(const Scene& scene) {
   return cause_of(
       scene, zeros(1), 0.02, 1.5,
       [](Scene& changed, const Numbers& p) { changed.scale_modulus(std::exp(p[0])); },
-      [scene](const Numbers& p) {
+      [scene](const Scene&, const Numbers& p) {
         std::string text =
             fmt::format("the bending stiffness is {:.3g} times the scene's", std::exp(p[0]));
         if (is_pulled_by_weight_alone(scene)) {
@@ -88,7 +88,7 @@ SceneCause torsional_stiffness(const Scene& scene) {
   return cause_of(
       scene, zeros(1), 0.05, 1.5,
       [](Scene& changed, const Numbers& p) { changed.scale_torsion(std::exp(p[0])); },
-      [](const Numbers& p) {
+      [](const Scene&, const Numbers& p) {
         return fmt::format("the torsional stiffness is {:.3g} times the scene's", std::exp(p[0]));
       });
 }
@@ -100,8 +100,8 @@ SceneCause gravity(const Scene& scene, const Eigen::Vector3d& down) {
   return cause_of(
       scene, down * size - scene.gravity, 0.02 * size, size,
       [](Scene& changed, const Numbers& p) { changed.gravity += p; },
-      [scene](const Numbers& p) {
-        const Eigen::Vector3d g = scene.gravity + p;
+      [scene](const Scene& changed, const Numbers&) {
+        const Eigen::Vector3d& g = changed.gravity;
         const double turned = std::atan2(g.cross(scene.gravity).norm(), g.dot(scene.gravity));
         return fmt::format("gravity is [{:.3g}, {:.3g}, {:.3g}] m/s^2, rotated by {:.3g} deg",
                            g.x(), g.y(), g.z(), turned / degree);
@@ -113,26 +113,22 @@ SceneCause length(const Scene& scene, double of_shape) {
   return cause_of(
       scene, Numbers::Constant(1, std::log(of_shape / scene.length)), 0, 0,
       [](Scene& changed, const Numbers& p) { scale_length(changed, std::exp(p[0])); },
-      [scene](const Numbers& p) {
-        return fmt::format("the rod is {:.4g} m long, not {:.4g} m", scene.length * std::exp(p[0]),
-                           scene.length);
+      [scene](const Scene& changed, const Numbers&) {
+        return fmt::format("the rod is {:.4g} m long, not {:.4g} m", changed.length, scene.length);
       });
 }
 
 /// Returns the cause that a clamp has another direction: in the plane with this normal, or any.
 SceneCause direction(const Scene& scene, std::size_t index,
                      const std::optional<Eigen::Vector3d>& normal) {
-  const Gripper& clamp = scene.grippers[index];
-  const Eigen::Matrix3Xd ways = ways_across(*clamp.direction, normal);
+  const Eigen::Matrix3Xd ways = ways_across(*scene.grippers[index].direction, normal);
   return cause_of(
       scene, zeros(ways.cols()), 1 * degree, 40 * degree,
       [index, ways](Scene& changed, const Numbers& p) {
         turn_clamp(changed.grippers[index], ways * p);
       },
-      [clamp, index, ways](const Numbers& p) {
-        Gripper turned = clamp;
-        turn_clamp(turned, ways * p);
-        const Eigen::Vector3d to = *turned.direction;
+      [index](const Scene& changed, const Numbers& p) {
+        const Eigen::Vector3d& to = *changed.grippers[index].direction;
         return fmt::format("gripper {} is rotated by {:.3g} deg, to [{:.4g}, {:.4g}, {:.4g}]",
                            index + 1, p.norm() / degree, to.x(), to.y(), to.z());
       });
@@ -147,7 +143,7 @@ SceneCause position(const Scene& scene, std::size_t index,
       [index, ways](Scene& changed, const Numbers& p) {
         changed.grippers[index].position += ways * p;
       },
-      [index, ways](const Numbers& p) {
+      [index, ways](const Scene&, const Numbers& p) {
         const Eigen::Vector3d way = ways * p * 1e3;
         return fmt::format("gripper {} is {:.3g} mm away, by [{:.3g}, {:.3g}, {:.3g}] mm",
                            index + 1, way.norm(), way.x(), way.y(), way.z());
@@ -192,9 +188,7 @@ SceneCause clamps_for_pins(const Scene& scene, const std::vector<std::size_t>& p
       first += ways[k].cols();
     }
   };
-  const auto words = [held, turn, pins](const Numbers& p) {
-    Scene changed = held;
-    turn(changed, p);
+  const auto words = [pins](const Scene& changed, const Numbers&) {
     std::vector<std::string> directions;
     for (const std::size_t i : pins) directions.push_back(text_of(*changed.grippers[i].direction));
     if (pins.size() == 1) {
@@ -225,7 +219,7 @@ SceneCause pins_for_clamps(const Scene& scene, const std::vector<std::size_t>& c
           : "the clamps let the rod rotate: pins, not clamps";
   SceneCause cause = cause_of(
       free, zeros(0), 0, 0, [](Scene&, const Numbers&) {},
-      [words](const Numbers&) { return words; });
+      [words](const Scene&, const Numbers&) { return words; });
   cause.other_state = true;
   return cause;
 }
@@ -251,7 +245,7 @@ SceneCause natural_curvature(const Scene& scene) {
       [](Scene& changed, const Numbers& p) {
         bend_by_nature(changed, 0, {0, p[0]});
       },
-      [scene](const Numbers& p) {
+      [scene](const Scene&, const Numbers& p) {
         return fmt::format("the rod is intrinsically curved, {:.3g} 1/m{}",
                            scene.natural_strain.y() + p[0],
                            scene.naturally_curved() ? " in the mean" : "");
@@ -269,7 +263,7 @@ SceneCause twist(const Scene& scene, std::size_t last) {
         if (changed.torsional_stiffness) return;
         changed.torsional_stiffness = changed.bending_stiffness() / (1 + assumed_poisson_ratio);
       },
-      [last](const Numbers& p) {
+      [last](const Scene&, const Numbers& p) {
         return fmt::format("gripper {} turns the rod about its direction by {:.3g} deg (twist)",
                            last + 1, p[0] / degree);
       });
@@ -292,8 +286,8 @@ void add_other_gravity(std::vector<SceneCause>& causes, const Scene& scene) {
 
 std::optional<FittedCause> fit_cause(const SceneCause& cause, const MeasuredShape& shape,
                                      const energy_model::Equilibrium& rod,
-                                     const ShapeCheckOptions& options,
-                                     const CauseFitLimits& limits) {
+                                     const ShapeCheckOptions& options, double noise,
+                                     const Timer& timer) {
   const std::vector<Scene> scene = {cause.changed(cause.start)};
   MeasuredShapes measured(scene, {shape},
                           {.pose = options.pose,
@@ -301,7 +295,7 @@ std::optional<FittedCause> fit_cause(const SceneCause& cause, const MeasuredShap
                            .weights = PointWeights::by_length,
                            .solve = options.solve,
                            .flat = FlatShapes::measured},
-                          limits.timer);
+                          timer);
   std::vector<Unknown> unknowns;
   for (const double stride : cause.stride) {
     unknowns.push_back({.stride = stride, .longest_step = cause.longest_step});
@@ -309,7 +303,7 @@ std::optional<FittedCause> fit_cause(const SceneCause& cause, const MeasuredShap
   FittedRods rods(
       measured, [&](std::size_t, const Eigen::VectorXd& p) { return cause.changed(p); }, unknowns);
   if (!goes_to_state(cause, rod, rods)) return std::nullopt;
-  const Eigen::VectorXd numbers = best_numbers(cause, limits.noise, rods);
+  const Eigen::VectorXd numbers = best_numbers(cause, noise, rods);
   return FittedCause{numbers, *rods.rods()[0]};
 }
 

@@ -20,7 +20,7 @@ struct SceneCause {
   Eigen::VectorXd stride;   ///< strides of differences; zero: the start is not fitted
   double longest_step = 0;  ///< longest step of any number
   std::function<Scene(const Eigen::VectorXd&)> changed;
-  std::function<std::string(const Eigen::VectorXd&)> words;
+  std::function<std::string(const Scene& changed, const Eigen::VectorXd&)> words;
   /// Name of a group of causes of which only the best is reported; empty: reported by itself.
   std::string same_as = {};
   /// Whether the rod is held in another way, so that its equilibrium may be far from the compared
@@ -45,19 +45,17 @@ struct FittedCause {
   energy_model::Equilibrium rod;
 };
 
-struct CauseFitLimits {
-  double noise = 0;  ///< differences up to this count as equal [m]
-  Timer timer;       ///< started when the time limit begins
-};
-
-/// Fits the numbers of a cause to a shape. @param rod  rod with which the shape was compared
+/// Fits the numbers of a cause to a shape.
+/// @param rod    rod with which the shape was compared
+/// @param noise  differences up to this count as equal [m]
+/// @param timer  started when the time limit begins
 /// @return std::nullopt if the scene at the start of the cause has no equilibrium
 /// @throws ConvergenceError if no time is left; InputError if the scene is invalid, or the shape
 /// has too few points
 [[nodiscard]] std::optional<FittedCause> fit_cause(const SceneCause& cause,
                                                    const MeasuredShape& shape,
                                                    const energy_model::Equilibrium& rod,
-                                                   const ShapeCheckOptions& options,
-                                                   const CauseFitLimits& limits);
+                                                   const ShapeCheckOptions& options, double noise,
+                                                   const Timer& timer);
 
 }  // namespace dlo::compare

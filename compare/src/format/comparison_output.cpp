@@ -109,7 +109,7 @@ Json comparison_json(const compare::Comparison& comparison) {
   Json& parts = result["budget"] = Json::object();
   Json shares = Json::object();
   for (const compare::NamedPart& part : compare::budget_parts()) {
-    if (part.is_neglected && !neglects(comparison, part.name)) continue;
+    if (part.is_neglected && !neglects(comparison.force, part.name)) continue;
     std::string key = part.name;
     std::ranges::replace(key, ' ', '_');
     parts[key + "_m"] = (budget.*part.of).rms_m;

@@ -4,10 +4,6 @@
 
 namespace dlo::compare {
 
-bool neglects(const Comparison& comparison, const char* what) {
-  return neglects(comparison.force, what);
-}
-
 std::span<const NamedPart> budget_parts() {
   static const NamedPart parts[] = {
       {"twist", "twist", &Budget::twist, true},
@@ -26,7 +22,7 @@ std::vector<std::pair<const char*, const BudgetPart*>> shown_parts(const Compari
   std::vector<std::pair<const char*, const BudgetPart*>> parts;
   for (const NamedPart& part : budget_parts()) {
     const BudgetPart& value = comparison.budget.*part.of;
-    const bool absent = part.is_neglected ? !neglects(comparison, part.name)
+    const bool absent = part.is_neglected ? !neglects(comparison.force, part.name)
                                           : part.of == &Budget::contact && value.rms_m == 0;
     if (!absent) parts.emplace_back(part.name, &value);
   }

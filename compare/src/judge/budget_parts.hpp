@@ -8,9 +8,6 @@
 
 namespace dlo::compare {
 
-/// Whether the force model neglected a property of the scene (Solution::neglected).
-[[nodiscard]] bool neglects(const Comparison& comparison, const char* what);
-
 /// A named part of an error budget.
 struct NamedPart {
   const char* name;

@@ -75,6 +75,27 @@ std::vector<Eigen::Vector3d> shape_loads_before(const Scene& scene,
   return sums;
 }
 
+PointForces forces_on_points(const Scene& scene, const std::vector<double>& s) {
+  const auto count = static_cast<Eigen::Index>(s.size());
+  PointForces result{Eigen::Matrix3Xd::Zero(3, count), Eigen::Matrix3Xd::Zero(3, count)};
+  for (Eigen::Index i = 0; i < count; ++i) {
+    const auto at = static_cast<std::size_t>(i);
+    const double begin = i == 0 ? 0 : (s[at - 1] + s[at]) / 2;
+    const double end = i + 1 == count ? scene.length : (s[at] + s[at + 1]) / 2;
+    result.weights.col(i) = scene.weight_between(begin, end);
+    result.loads.col(i) = scene.distributed_between(begin, end);
+  }
+  for (const PointLoad& load : scene.loads) {
+    const auto above = std::upper_bound(s.begin() + 1, s.end() - 1, load.at);
+    const Eigen::Index right = above - s.begin();
+    const double left_at = *(above - 1);
+    const double share = std::clamp((load.at - left_at) / (*above - left_at), 0.0, 1.0);
+    result.loads.col(right - 1) += (1 - share) * load.force;
+    result.loads.col(right) += share * load.force;
+  }
+  return result;
+}
+
 Eigen::Matrix3Xd drag_forces(const Scene& scene, const std::vector<double>& arc_length,
                              const Eigen::Matrix3Xd& points) {
   Eigen::Matrix3Xd forces = Eigen::Matrix3Xd::Zero(3, points.cols());

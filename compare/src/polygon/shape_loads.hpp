@@ -16,6 +16,17 @@ namespace dlo::compare {
     const Scene& scene, const energy_model::Equilibrium& shape,
     const std::vector<double>& arc_lengths);
 
+/// Forces on the points of a polygon [N], 3 x points.
+struct PointForces {
+  Eigen::Matrix3Xd weights;
+  Eigen::Matrix3Xd loads;  ///< all forces of the scene except weight and drag
+};
+
+/// Returns the forces on points along a whole rod. Weight and distributed loads act on the point
+/// that is nearest along the rod, a load between two points by the lever rule on both.
+/// @param s  arc lengths of the points, growing [m]
+[[nodiscard]] PointForces forces_on_points(const Scene& scene, const std::vector<double>& s);
+
 /// Returns the drag on the points of a polygon in its current shape [N], 3 x points. The drag on
 /// the part of a segment that belongs to the rod acts by halves on the segment's ends.
 /// @param scene       has drag

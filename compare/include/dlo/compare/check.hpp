@@ -79,8 +79,9 @@ struct ShapeNear {
 };
 
 /// Checks a shape by its RMS deviation, at its own arc lengths. A malformed shape (different
-/// numbers of points and arc lengths, fewer than two, not finite, arc lengths that do not increase
-/// or leave the rod by more than 1e-6 l) is not near, and the explanation says why.
+/// numbers of points and arc lengths, fewer than two, not finite, arc lengths that neither increase
+/// nor decrease, or that leave the rod by more than 1e-6 l) is not near, and the explanation says
+/// why.
 /// @param tolerance  share of the rod's length or of_deflection() [-], > 0
 /// @throws std::invalid_argument for a tolerance that is not > 0, InputError, ConvergenceError
 [[nodiscard]] ShapeNear shape_near(const Shape& shape, const Scene& scene,
