@@ -159,7 +159,7 @@ std::string cards_junit(const std::vector<Card>& cards) {
     for (const CardScene& scene : card.scenes) {
       compare::JunitCase one{
           .group = "dlo.suite." + scene.group, .name = scene.id, .message = what_is_wrong(scene)};
-      for (const compare::CardRun& run : scene.runs) one.seconds += run.seconds;
+      for (const compare::SimulatorRun& run : scene.runs) one.seconds += run.seconds;
       if (scene.status() == RunStatus::not_supported) {
         one.outcome = "skipped";
       } else if (scene.status() != RunStatus::solved) {

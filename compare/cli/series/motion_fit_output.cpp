@@ -24,28 +24,27 @@ compare::Document motion_fit_document(const compare::MotionFit& fit, const compa
   const auto optional = [](const std::optional<MotionNumber>& number) {
     return number ? motion_number_json(*number) : Json(nullptr);
   };
-  Json markers = Json::array();
-  for (const compare::MarkerError& marker : fit.by_marker) {
-    markers.push_back({{"s_m", marker.at}, {"rms_m", marker.rms}});
-  }
-  Json recordings = Json::array();
-  for (const compare::FittedRecording& recording : fit.recordings) {
-    recordings.push_back(
-        {{"file", recording.file},
-         {"times", recording.times},
-         {"from_s", recording.from},
-         {"to_s", recording.to},
-         {"rms_m", recording.rms},
-         {"worst", {{"time_s", recording.worst_time}, {"rms_m", recording.worst_rms}}},
-         {"starts_as_recorded", recording.starts_as_recorded}});
-  }
+  const auto marker_json = [](const compare::PartError& marker) -> Json {
+    return {{"s_m", marker.from_m}, {"rms_m", marker.rms_m}};
+  };
+  const auto recording_json = [](const compare::FittedRecording& recording) -> Json {
+    const compare::MotionErrors& errors = recording.errors;
+    const compare::FrameError& worst = errors.frames[errors.worst_frame];
+    return {{"file", recording.file},
+            {"times", errors.frames.size()},
+            {"from_s", errors.frames.front().time},
+            {"to_s", errors.frames.back().time},
+            {"rms_m", errors.rms_m},
+            {"worst", {{"time_s", worst.time}, {"rms_m", worst.rms_m}}},
+            {"starts_as_recorded", recording.starts_as_recorded}};
+  };
   const compare::NamedValue given = scene.stiffness();
   Json stiffness = motion_number_json(fit.scene_stiffness);
   stiffness["name"] = given.name;
   stiffness["unit"] = given.unit;
   stiffness["scene"] = given.value;
   Json result = {{"schema", "dlo/motion_fit/1"},
-                 {"recordings", recordings},
+                 {"recordings", compare::json_list(fit.recordings, recording_json)},
                  {"identified", fit.not_identified.empty()},
                  {"not_identified", fit.not_identified},
                  {"stiffness", stiffness},
@@ -58,7 +57,7 @@ compare::Document motion_fit_document(const compare::MotionFit& fit, const compa
                  {"effective_coordinates", fit.effective_coordinates},
                  {"rms_m", fit.rms},
                  {"given_rms_m", fit.given_rms},
-                 {"markers", markers},
+                 {"markers", compare::json_list(fit.by_marker, marker_json)},
                  {"terms", fit.terms},
                  {"simulations", fit.simulations}};
   return {.json = std::move(result)};

@@ -321,7 +321,7 @@ MeasuredCase measure_program(const Scene& scene, const ForeignProgram& program,
   MeasuredCase result{case_of(scene, Model::force), ""};
   BaselineCase& entry = result.entry;
   entry.program = program.name;
-  const ForeignRun run = run_foreign(program, scene, entry.points, options.time_limit);
+  const SimulatorRun run = run_foreign(program, scene, entry.points, options.time_limit);
   result.problem = run.problem;
   if (!run.shape) return result;
   const energy_model::Equilibrium energy = solve_reference(scene, options);

@@ -158,9 +158,9 @@ constexpr const char* shape_name = "its shape";
 
 /// Runs a program on a scene's document. @param read  reads the file that the program wrote; may
 /// throw InputError
-ForeignRun run_on_document(
+SimulatorRun run_on_document(
     const ForeignProgram& program, const std::string& document, int points, double time_limit,
-    const std::function<void(const std::string& file, ForeignRun& result)>& read) {
+    const std::function<void(const std::string& file, SimulatorRun& result)>& read) {
   const ProgramFolder folder;
   write_file(folder.file("scene.json"), document);
   std::vector<std::string> words;
@@ -171,23 +171,21 @@ ForeignRun run_on_document(
                                        {shape_place, folder.file("shape")}}));
   }
   const ChildOutcome outcome = run_child(words, {.error = folder.file("stderr")}, time_limit);
-  ForeignRun result;
-  result.seconds = outcome.seconds;
-  result.too_long = outcome.too_long;
+  SimulatorRun result{.points = points, .seconds = outcome.seconds, .too_long = outcome.too_long};
   const auto refuses = [&] {
     constexpr int refusal = 3;
     return outcome.exit_status == refusal ||
            last_words(folder.file("stderr")).starts_with(": not supported");
   };
   if (!outcome.problem.empty()) {
-    result.not_supported = !outcome.too_long && refuses();
+    if (!outcome.too_long && refuses()) result.status = RunStatus::not_supported;
     result.problem = outcome.problem + last_words(folder.file("stderr"));
     return result;
   }
   try {
     const std::string file = folder.shape_file();
     if (file.empty()) {
-      result.not_supported = refuses();
+      if (refuses()) result.status = RunStatus::not_supported;
       result.problem = "wrote no shape" + last_words(folder.file("stderr"));
       return result;
     }
@@ -213,29 +211,32 @@ bool is_shape(const std::string& text) {
   }
 }
 
-void read_motion(const std::string& file, ForeignRun& result) {
+void read_motion(const std::string& file, SimulatorRun& result) {
   const std::string text = read_regular_file(file, shape_name);
-  result.not_supported = is_shape(text);
-  if (result.not_supported) {
+  if (is_shape(text)) {
+    result.status = RunStatus::not_supported;
     result.problem = "wrote a shape at rest, no frames (time,s,x,y,z)";
   } else {
     result.motion = parse_markers(text, shape_name);
+    result.status = RunStatus::solved;
   }
 }
 
 }  // namespace
 
-ForeignRun run_foreign(const ForeignProgram& program, Scene scene, int points, double time_limit) {
+SimulatorRun run_foreign(const ForeignProgram& program, Scene scene, int points,
+                         double time_limit) {
   scene.force_model.points = points;
   return run_on_document(program, scene_document_text(scene), points, time_limit,
-                         [&scene](const std::string& file, ForeignRun& result) {
+                         [&scene](const std::string& file, SimulatorRun& result) {
                            result.shape = whole_of_segment_starts(
                                scene, parse_shape(read_regular_file(file, shape_name), shape_name));
+                           result.status = RunStatus::solved;
                          });
 }
 
-ForeignRun run_foreign_motion(const ForeignProgram& program, const std::string& document,
-                              int points, double time_limit) {
+SimulatorRun run_foreign_motion(const ForeignProgram& program, const std::string& document,
+                                int points, double time_limit) {
   return run_on_document(program, document, points, time_limit, read_motion);
 }
 

@@ -1,9 +1,11 @@
 #pragma once
 
+#include <limits>
 #include <optional>
 #include <string>
 #include <vector>
 
+#include "dlo/compare/choice.hpp"
 #include "dlo/compare/deviation.hpp"
 #include "dlo/compare/scene.hpp"
 #include "dlo/compare/shape_file.hpp"
@@ -30,17 +32,38 @@ struct ForeignProgram {
 [[nodiscard]] std::vector<ForeignProgram> parse_foreign_programs(
     const std::vector<std::string>& texts);
 
-/// Result of a foreign program on a scene, or the reason why there is none.
-struct ForeignRun {
-  std::optional<MeasuredShape> shape;  ///< the shape as written; empty for a motion
-  std::optional<MarkerMotion> motion;  ///< the motion as written, if a motion was requested
-  double seconds = 0;                  ///< wall time of the process [s]
-  std::string problem;                 ///< one line; empty if there is a shape or a motion
-  bool too_long = false;               ///< killed at the time limit
-  /// The program does not support the scene: its exit status is 3, or it failed or wrote no shape
-  /// and the last line of its standard error begins with "not supported", or it wrote one shape
-  /// instead of a motion.
-  bool not_supported = false;
+/// Status of a run.
+enum class RunStatus {
+  solved,         ///< there is a shape or a motion
+  not_supported,  ///< the simulator reports that it does not support the scene
+  failed,         ///< any other outcome
+  not_judged,     ///< the reference of the scene did not converge; the simulator was not run
+};
+
+/// Names of the statuses in files.
+template <>
+struct Choices<RunStatus> {
+  /// All statuses, in the order of the enumeration.
+  static constexpr Choice<RunStatus> all[] = {{RunStatus::solved, "solved", ""},
+                                              {RunStatus::not_supported, "not supported", ""},
+                                              {RunStatus::failed, "failed", ""},
+                                              {RunStatus::not_judged, "not judged", ""}};
+};
+
+/// Shape or motion of a scene with N points, or the reason why there is none. A program does not
+/// support a scene if its exit status is 3, if it failed or wrote no shape and the last line of its
+/// standard error begins with "not supported", or if it wrote one shape instead of a motion.
+struct SimulatorRun {
+  int points = 0;                        ///< N
+  RunStatus status = RunStatus::failed;  ///< how the run ended
+  std::string problem;                   ///< one line; empty if there is a shape or a motion
+  double seconds = 0;                    ///< wall time of the simulator [s]
+  bool too_long = false;                 ///< a program was killed at the time limit
+  std::optional<MeasuredShape> shape;    ///< shape of a solved run of a scene at rest
+  std::optional<MarkerMotion> motion;    ///< motion of a solved run of a scene that moves
+  /// RMS distance from the reference, divided by the length, or for a motion by
+  /// MotionReference::travel [-]; NaN without a shape, or if it was not compared.
+  double error = std::numeric_limits<double>::quiet_NaN();
 };
 
 /// Runs a program on a scene. {scene} is replaced by a file with the scene's document for `points`
@@ -49,14 +72,14 @@ struct ForeignRun {
 /// removed afterwards. The working directory is that of this process.
 /// @param time_limit  [s], > 0
 /// @throws OutputError if that folder cannot be made or written
-[[nodiscard]] ForeignRun run_foreign(const ForeignProgram& program, Scene scene, int points,
-                                     double time_limit);
+[[nodiscard]] SimulatorRun run_foreign(const ForeignProgram& program, Scene scene, int points,
+                                       double time_limit);
 
 /// Runs a program on the document of a motion, as run_foreign() does. The program writes frames
 /// that parse_markers() reads. If it writes one shape instead, the result is not_supported.
-[[nodiscard]] ForeignRun run_foreign_motion(const ForeignProgram& program,
-                                            const std::string& document, int points,
-                                            double time_limit);
+[[nodiscard]] SimulatorRun run_foreign_motion(const ForeignProgram& program,
+                                              const std::string& document, int points,
+                                              double time_limit);
 
 /// Checks that each end that a gripper holds is at the gripper: within 1 % of the length, plus the
 /// part of the rod that the file's arc lengths leave out at that end.

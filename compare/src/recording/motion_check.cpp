@@ -9,6 +9,7 @@
 
 #include "base/number.hpp"
 #include "dlo/compare/error.hpp"
+#include "explain/cause_limits.hpp"
 #include "motion/motion_misfit.hpp"
 #include "motion/moving_scene.hpp"
 #include "motion/track.hpp"
@@ -18,7 +19,9 @@
 namespace dlo::compare {
 namespace {
 
-constexpr int whole_rod_samples = 201;
+/// Number of points of the rod in each frame: the error of cubics between them is 1e-10 for a
+/// smooth rod.
+constexpr int model_samples = 201;
 
 Shape rod_shape(const ModelMotion& model, double time, std::vector<double> arc_length) {
   Shape shape{.arc_length = std::move(arc_length), .points = {}};
@@ -29,42 +32,12 @@ Shape rod_shape(const ModelMotion& model, double time, std::vector<double> arc_l
   return shape;
 }
 
-/// Number of points of the rod in each frame: the error of cubics between them is 1e-10 for a
-/// smooth rod.
-constexpr int model_samples = 201;
 constexpr int fewest_frames = 4;  // as many as a cubic needs
 /// Ratio of the model's frame rate to the recording's, which contains nothing faster than half its
 /// own rate.
 constexpr double frames_per_recorded = 4;
 /// Number of frames up to which the scene's own frame rate is used.
 constexpr double usual_frames = 2000;
-/// Errors, divided by the length, that count as zero: those of the interpolation where
-/// accelerations jump.
-constexpr double no_error = 1e-5;
-/// Largest remaining part of the deviation with which another path of a gripper is reported. It is
-/// small because a path has three numbers per frame.
-constexpr double path_may_leave = 0.35;
-
-struct RecordedTimes {
-  double first = 0, last = 0;  // [s]
-  double rate = 0;             // mean [Hz]
-};
-
-RecordedTimes times_of(const Scene& scene, const MarkerMotion& recorded) {
-  std::size_t times = 0;
-  double before = -std::numeric_limits<double>::infinity();
-  for (const MarkerPosition& at : recorded.positions) {
-    if (!on_rod(at.arc_length, scene.length)) {
-      throw InputError(fmt::format("{}: a point at s = {:g} m (allowed: 0 to the rod's {:g} m)",
-                                   recorded.file, at.arc_length, scene.length));
-    }
-    times += at.time > before ? 1 : 0;
-    before = at.time;
-  }
-  if (times < 2) throw InputError(recorded.file + ": one time only (allowed: two or more)");
-  const double first = recorded.positions.front().time;
-  return {first, before, static_cast<double>(times - 1) / (before - first)};
-}
 
 /// The rod by both models, as far as they exist.
 struct Models {
@@ -87,8 +60,9 @@ TrackOptions track_options(const Scene& scene, const RecordedTimes& times,
   }
   // Frames of an early recording are compared with the rod at a later time.
   const double to = times.last + lag_range_share * (times.last - times.first);
-  const double rate = request.frame_rate.value_or(std::max(
-      frames_per_recorded * times.rate, std::min(scene.track.frames, usual_frames / (to - from))));
+  const double rate = request.frame_rate.value_or(
+      std::max(frames_per_recorded * (times.count - 1) / (times.last - times.first),
+               std::min(scene.track.frames, usual_frames / (to - from))));
   const double frames = std::max<double>(fewest_frames, std::ceil((to - from) * rate));
   TrackOptions options{.from = from,
                        .to = to,
@@ -171,7 +145,8 @@ void add_inertia(const Scene& scene, const MarkerMotion& recorded,
 
 Models run_models(const Scene& scene, const MarkerMotion& recorded,
                   const MotionCheckRequest& request, const Progress& progress) {
-  const RecordedTimes times = times_of(scene, recorded);
+  const RecordedTimes times = recorded_times(recorded, scene.length);
+  if (times.count < 2) throw InputError(recorded.file + ": one time only (allowed: two or more)");
   Models models{.options = track_options(scene, times, request)};
   if (request.model == MotionModel::with_inertia) require_dynamic(scene);
   const std::optional<TrackStop> stopped =
@@ -228,19 +203,15 @@ class CauseSearch {
   }
 
  private:
-  static std::string lag_words(const MotionShift& shift) {
-    return fmt::format("it is {:.4g} ms {}", std::abs(shift.lag) * 1e3,
-                       shift.lag > 0 ? "late" : "early");
-  }
   static std::string offset_words(const MotionShift& shift) {
     return fmt::format("all of it is displaced by [{:.3g}, {:.3g}, {:.3g}] mm",
                        shift.offset.x() * 1e3, shift.offset.y() * 1e3, shift.offset.z() * 1e3);
   }
   void add(MotionCause::Kind kind, std::string words, double left) {
-    const double may_leave =
-        kind == MotionCause::Kind::gripper_path ? path_may_leave : cause_may_leave;
+    const double may_leave = kind == MotionCause::Kind::gripper_path ? cause_limits::path_left
+                                                                     : cause_limits::recording_left;
     // A deviation that counts as zero needs no cause.
-    if (!(least_ > no_error * check_.scene.length)) return;
+    if (!(least_ > cause_limits::no_recording_error * check_.scene.length)) return;
     if (!(left <= may_leave * least_)) return;
     least_ = left;
     causes_.push_back({kind, std::move(words), left});
@@ -269,10 +240,10 @@ class CauseSearch {
 
 /// Returns the model that is clearly nearer; std::nullopt if neither is.
 std::optional<MotionModel> nearer_model(const MotionCheck& check) {
-  if (check.at_rest_rms_m <= cause_may_leave * check.with_inertia_rms_m) {
+  if (check.at_rest_rms_m <= cause_limits::recording_left * check.with_inertia_rms_m) {
     return MotionModel::at_rest;
   }
-  if (check.with_inertia_rms_m <= cause_may_leave * check.at_rest_rms_m) {
+  if (check.with_inertia_rms_m <= cause_limits::recording_left * check.at_rest_rms_m) {
     return MotionModel::with_inertia;
   }
   return std::nullopt;
@@ -318,10 +289,10 @@ FrameShapes frame_shapes(const MarkerMotion& recorded, const ModelMotion& model,
     result.recorded.points.col(static_cast<Eigen::Index>(i)) = points[i];
   }
   result.on_rod = rod_shape(model, time, result.recorded.arc_length);
-  result.rod = rod_shape(model, time, equal_arc_lengths(length, whole_rod_samples));
+  result.rod = rod_shape(model, time, equal_arc_lengths(length, model_samples));
   if (std::isfinite(lag)) {
     result.rod_at_other_time =
-        rod_shape(model, time - lag, equal_arc_lengths(length, whole_rod_samples));
+        rod_shape(model, time - lag, equal_arc_lengths(length, model_samples));
   }
   return result;
 }
@@ -355,18 +326,17 @@ MotionCheck check_motion(const Scene& scene, const MarkerMotion& recorded,
   check.nearer = nearer_model(check);
   judge_motion(check);
   const ModelMotion& judged = *models.of(check.model);
-  check.worst_shapes = frame_shapes(recorded, judged, check.worst().time, scene.length, check.lag);
-  if (!(check.errors.rms_m > no_error * scene.length)) return check;
-  CauseSearch search(check, models, recorded);
-  const std::optional<MotionShift> lag = search.lag();
-  if (lag && lag->rms_m <= cause_may_leave * check.errors.rms_m) {
-    check.lag = lag->lag;
-    check.lag_rms_m = lag->rms_m;
-    check.frames_without_lag = errors_without_lag(recorded, judged, lag->lag, scene.length);
-    check.worst_shapes =
-        frame_shapes(recorded, judged, check.worst().time, scene.length, check.lag);
+  if (check.errors.rms_m > cause_limits::no_recording_error * scene.length) {
+    CauseSearch search(check, models, recorded);
+    const std::optional<MotionShift> lag = search.lag();
+    if (lag && lag->rms_m <= cause_limits::recording_left * check.errors.rms_m) {
+      check.lag = lag->lag;
+      check.lag_rms_m = lag->rms_m;
+      check.frames_without_lag = errors_without_lag(recorded, judged, lag->lag, scene.length);
+    }
+    if (request.explaining == Explaining::yes) check.causes = search.run(lag);
   }
-  if (request.explaining == Explaining::yes) check.causes = search.run(lag);
+  check.worst_shapes = frame_shapes(recorded, judged, check.worst().time, scene.length, check.lag);
   return check;
 }
 

@@ -113,10 +113,6 @@ struct MotionCheck {
   [[nodiscard]] const FrameError& worst() const { return errors.frames[errors.worst_frame]; }
 };
 
-/// Largest part of the RMS distance that a cause may leave: it explains half of the mean square
-/// distance.
-inline constexpr double cause_may_leave = 0.7;
-
 /// Compares a recording, by markers (parse_markers()), with the rod that follows the scene's
 /// grippers. Points are compared at their own times and arc lengths; the rod is interpolated, not
 /// the recording. Both models are computed if the scene allows both; one is judged.

@@ -176,21 +176,16 @@ void add_errors(const std::vector<MarkerMotion>& recordings, const Eigen::Vector
     const MarkerMotion& recorded = recordings[i];
     const Eigen::Index points = std::ssize(recorded.positions);
     const Eigen::Matrix3Xd own = residuals.segment(row, 3 * points).reshaped(3, points);
-    const MotionErrors errors = motion_errors(recorded, own, scene.length);
-    const FrameError& worst = errors.frames[errors.worst_frame];
-    result.recordings.push_back({recorded.file, errors.frames.size(), errors.frames.front().time,
-                                 errors.frames.back().time, errors.rms_m, worst.time, worst.rms_m,
-                                 misfit.starts_as_recorded(i)});
+    result.recordings.push_back(
+        {recorded.file, motion_errors(recorded, own, scene.length), misfit.starts_as_recorded(i)});
     joined.positions.insert(joined.positions.end(), recorded.positions.begin(),
                             recorded.positions.end());
     row += 3 * points;
   }
   const Eigen::Matrix3Xd all = residuals.reshaped(3, residuals.size() / 3);
-  const MotionErrors errors = motion_errors(joined, all, scene.length, joined.positions.size());
+  MotionErrors errors = motion_errors(joined, all, scene.length, joined.positions.size());
   result.rms = errors.rms_m;
-  for (const PartError& marker : errors.markers) {
-    result.by_marker.push_back({marker.from_m, marker.rms_m});
-  }
+  result.by_marker = std::move(errors.markers);
 }
 
 }  // namespace

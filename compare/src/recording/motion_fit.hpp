@@ -7,6 +7,7 @@
 #include "dlo/compare/progress.hpp"
 #include "dlo/compare/scene.hpp"
 #include "motion/moving_scene.hpp"
+#include "recording/motion_residuals.hpp"
 #include "trajectory/read_trajectory.hpp"
 
 namespace dlo::compare {
@@ -28,20 +29,10 @@ struct MotionNumber {
   bool identified = true;  ///< whether the interval is narrower than a factor of 100
 };
 
-/// Distance of one marker of a recorded motion from the moving rod.
-struct MarkerError {
-  double at = 0;   ///< arc length [m]
-  double rms = 0;  ///< RMS distance from the moving rod [m]
-};
-
 /// A recording to which a moving rod was fitted, with its distances.
 struct FittedRecording {
   std::string file;
-  std::size_t times = 0;
-  double from = 0, to = 0;  ///< [s]
-  double rms = 0;           ///< RMS distance between markers and rod [m]
-  double worst_time = 0;    ///< time at which the RMS distance is largest [s]
-  double worst_rms = 0;     ///< RMS distance at that time [m]
+  MotionErrors errors;  ///< distances between markers and rod
   /// Whether the rod starts with a fitted shape and velocities; otherwise it starts in equilibrium,
   /// because the markers are too few.
   bool starts_as_recorded = false;
@@ -64,7 +55,7 @@ struct MotionFit {
   /// Number of independent coordinates with the same information: the residuals of a marker are
   /// correlated in time.
   double effective_coordinates = 0;
-  std::vector<MarkerError> by_marker;  ///< in the order of arc length
+  std::vector<PartError> by_marker;  ///< in the order of arc length
   int simulations = 0;
 };
 

@@ -1,13 +1,18 @@
 #include "recording/motion_residuals.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <array>
 #include <cmath>
 #include <cstddef>
+#include <limits>
 #include <map>
 #include <utility>
 #include <vector>
 
+#include "dlo/compare/error.hpp"
+#include "dlo/compare/scene.hpp"
 #include "polygon/scalar_search.hpp"
 
 namespace dlo::compare {
@@ -94,6 +99,26 @@ Eigen::Vector3d ModelMotion::at(double time, double arc_length) const {
     }
   }
   return result;
+}
+
+RecordedTimes recorded_times(const MarkerMotion& recorded, double length) {
+  RecordedTimes times{.first = recorded.positions.front().time};
+  double before = -std::numeric_limits<double>::infinity();
+  for (const MarkerPosition& at : recorded.positions) {
+    if (!on_rod(at.arc_length, length)) {
+      throw InputError(fmt::format("{}: a point at s = {:g} m (allowed: 0 to the rod's {:g} m)",
+                                   recorded.file, at.arc_length, length));
+    }
+    times.count += at.time > before ? 1 : 0;
+    before = at.time;
+  }
+  times.last = before;
+  return times;
+}
+
+std::string lag_words(const MotionShift& shift) {
+  return fmt::format("it is {:.4g} ms {}", std::abs(shift.lag) * 1e3,
+                     shift.lag > 0 ? "late" : "early");
 }
 
 MotionShift best_offset(const MarkerMotion& recorded, const ModelMotion& model) {

@@ -58,6 +58,17 @@ struct MotionErrors {
 /// Largest number of markers that are listed; frames of a simulator may have any number of points.
 inline constexpr std::size_t most_markers = 30;
 
+/// Times of a recording.
+struct RecordedTimes {
+  int count = 0;               ///< number of different times
+  double first = 0, last = 0;  ///< [s]
+};
+
+/// Returns the times of a recording, which is in the order of time.
+/// @param length  of the rod [m]
+/// @throws InputError if a point is not on the rod
+[[nodiscard]] RecordedTimes recorded_times(const MarkerMotion& recorded, double length);
+
 /// Returns the recorded points minus the rod's points [m], 3 x positions.
 /// @param lag  delay of the recording: the rod's points are those at time - lag [s]
 [[nodiscard]] Eigen::Matrix3Xd motion_residuals(const MarkerMotion& recorded,
@@ -81,6 +92,9 @@ struct MotionShift {
   Eigen::Vector3d offset = Eigen::Vector3d::Zero();  ///< displacement of the recording [m]
   double rms_m = 0;                                  ///< remaining RMS distance [m]
 };
+
+/// Describes a lag: "it is 30 ms late".
+[[nodiscard]] std::string lag_words(const MotionShift& shift);
 
 /// Largest lag that is tried, in both directions, divided by the recording's duration.
 inline constexpr double lag_range_share = 0.25;

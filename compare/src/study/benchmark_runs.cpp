@@ -22,10 +22,39 @@ double error_of(const Scene& scene, const Shape& shape, const energy_model::Equi
   return distance(shape, rod.sample) / scene.length;
 }
 
-double error_of(const Scene& scene, const energy_model::Equilibrium& a,
-                const energy_model::Equilibrium& b) {
+Shape sampled_shape(const Scene& scene, const energy_model::Equilibrium& rod) {
   const std::vector<double> s = equal_arc_lengths(scene.length, reference_samples);
-  return error_of(scene, {s, a.sample(s).points}, b);
+  return {s, rod.sample(s).points};
+}
+
+bool is_polygon(Model model) { return model == Model::chain || model == Model::force; }
+
+/// One run of a model.
+struct SolvedRun {
+  double seconds = 0;
+  long evaluations = 0;  // or steps
+  Shape shape;
+};
+
+SolvedRun solved_run(const Scene& scene, const StaticSeries& series, int size) {
+  const Model model = series.model;
+  if (is_polygon(model)) {
+    const ForceModelSettings settings = series.variant.settings(scene, size);
+    // The limit exceeds what most series need. A series that needs more steps is reported as
+    // skipped.
+    SolveOptions options{.max_steps = 60'000'000 / size};
+    // A tenth of the discretisation error of the polygon with law hooke, which is about 0.1 / N^2.
+    options.rest_tolerance = std::clamp(0.01 / (size * size), 1e-7, 1e-4);
+    const Timer timer;
+    const Solution solution = model == Model::chain ? solve_chain(scene, settings, options)
+                                                    : solve_force(scene, settings, options);
+    return {timer.seconds(), model == Model::chain ? solution.evaluations : solution.steps,
+            solution.shape};
+  }
+  const Timer timer;
+  const energy_model::Equilibrium rod = solve_reference(scene, model, {.terms = size});
+  const double seconds = timer.seconds();
+  return {seconds, rod.evaluations, sampled_shape(scene, rod)};
 }
 
 }  // namespace
@@ -59,7 +88,7 @@ bool Stopwatch::run_once(const std::string& name, double predicted_s,
 }
 
 std::optional<Timing> Stopwatch::time(const std::string& name, double predicted_s,
-                                      const std::function<void()>& work) {
+                                      const std::function<double()>& work) {
   // Runs that are faster than this in total are repeated more often [s].
   constexpr double quick = 0.02;
   if (!fits(name, predicted_s)) return std::nullopt;
@@ -71,9 +100,7 @@ std::optional<Timing> Stopwatch::time(const std::string& name, double predicted_
     return total < quick && count < 20 * options_.repeats;
   };
   while (open()) {
-    const double before = seconds();
-    if (!done(name, work)) return std::nullopt;
-    times.push_back(seconds() - before);
+    if (!done(name, [&] { times.push_back(work()); })) return std::nullopt;
     total += times.back();
   }
   return timing_of(std::move(times));
@@ -93,10 +120,8 @@ ReferenceShape benchmark_reference(const Scene& scene) {
   const energy_model::Equilibrium energy = solve_reference(scene, Model::energy);
   try {
     result.rod = solve_reference(scene, Model::exact);
-    result.agreement = error_of(scene, energy, result.rod);
-  } catch (const InputError&) {
-    result = {Model::energy, energy, std::nan("")};
-  } catch (const ConvergenceError&) {
+    result.agreement = error_of(scene, sampled_shape(scene, energy), result.rod);
+  } catch (const ResultError&) {
     result = {Model::energy, energy, std::nan("")};
   }
   return result;
@@ -105,16 +130,14 @@ ReferenceShape benchmark_reference(const Scene& scene) {
 StaticRuns::StaticRuns(const Scene& scene, const ReferenceShape& reference,
                        const BenchmarkOptions& options, Stopwatch& watch)
     : scene_(scene), reference_(reference), options_(options), watch_(watch) {
+  constexpr double share = 1e-3;  // of AE, as the paper's c_c
   const ForceVariant hooke;
-  ForceVariant soft;
-  soft.stretch_share = 1e-3;
-  ForceVariant paper_law = soft;
-  paper_law.law = BendingLaw::paper;
-  paper_law.bookkeeping = Bookkeeping::paper;
-  ForceVariant paper_chain = paper_law;
-  paper_chain.stretch_share = 1;
-  ForceVariant dynamic = soft;
-  dynamic.stepper = Stepper::dynamic;
+  const ForceVariant soft{.stretch_share = share};
+  const ForceVariant implicit{.stepper = Stepper::implicit};
+  const ForceVariant dynamic{.stepper = Stepper::dynamic, .stretch_share = share};
+  const ForceVariant paper_chain{.law = BendingLaw::paper, .bookkeeping = Bookkeeping::paper};
+  ForceVariant paper_law = paper_chain;
+  paper_law.stretch_share = share;
   const auto add = [&](Model model, const ForceVariant& variant, const std::vector<int>& sizes) {
     series_.push_back({.model = model, .variant = variant, .sizes = sizes});
   };
@@ -122,8 +145,6 @@ StaticRuns::StaticRuns(const Scene& scene, const ReferenceShape& reference,
   if (reference.model == Model::exact) add(Model::exact, {}, {0});
   add(Model::energy, {}, {2, 3, 4, 6, 8, 12, 16, 24, 0});
   for (const ForceVariant& variant : {hooke, paper_chain}) add(Model::chain, variant, points);
-  ForceVariant implicit;
-  implicit.stepper = Stepper::implicit;
   for (const ForceVariant& variant : {soft, hooke, implicit, dynamic, paper_law}) {
     add(Model::force, variant, points);
   }
@@ -139,13 +160,7 @@ bool StaticRuns::next_round() {
     ran = true;
     const int size = series.sizes.front();
     series.sizes.erase(series.sizes.begin());
-    if (series.program != nullptr) {
-      run_program(series, size);
-    } else if (series.model == Model::exact || series.model == Model::energy) {
-      run_continuous(series, size);
-    } else {
-      run_polygon(series, size);
-    }
+    run(series, size);
   }
   return ran;
 }
@@ -158,97 +173,52 @@ std::vector<BenchmarkRun> StaticRuns::runs() const {
   return all;
 }
 
-void StaticRuns::run_continuous(StaticSeries& series, int terms) {
-  const Model model = series.model;
-  energy_model::Equilibrium result;
-  const std::optional<Timing> time = watch_.time(
-      fmt::format("{}: {}", scene_.name, name_of({.model = model, .size = terms})), series.last_s,
-      [&] { result = solve_reference(scene_, model, {.terms = terms}); });
-  if (!time) return;
-  series.last_s = time->median_s;
-  series.runs.push_back({.scene = scene_.name,
-                         .model = model,
-                         .size = terms,
-                         .variant = std::nullopt,
-                         .time = *time,
-                         .evaluations = result.evaluations,
-                         .rms_over_length = model == Model::exact
-                                                ? reference_.agreement
-                                                : error_of(scene_, result, reference_.rod)});
-}
-
-/// Runs a polygon model with N points. Its time is predicted from the previous, smaller N. If a run
-/// does not fit into the budget, larger ones do not fit either.
-void StaticRuns::run_polygon(StaticSeries& series, int points) {
-  const Model model = series.model;
-  const std::string name = name_of({.model = model, .size = points, .variant = series.variant});
-  const ForceModelSettings settings = series.variant.settings(scene_, points);
-  // The limit exceeds what most series need. A series that needs more steps is reported as skipped.
-  SolveOptions options{.max_steps = 60'000'000 / points};
-  // A tenth of the discretisation error of the polygon with law hooke, which is about 0.1 / N^2.
-  options.rest_tolerance = std::clamp(0.01 / (points * points), 1e-7, 1e-4);
-  const double growth = series.last_points > 0 ? std::pow(1.0 * points / series.last_points, 3) : 1;
-  Solution solution;
-  const std::optional<Timing> time =
-      watch_.time(fmt::format("{}: {}", scene_.name, name), series.last_s * growth, [&] {
-        solution = model == Model::chain ? solve_chain(scene_, settings, options)
-                                         : solve_force(scene_, settings, options);
-      });
-  if (!time) {
-    series.sizes.clear();
-    return;
-  }
-  series.last_s = time->median_s;
-  series.last_points = points;
-  series.runs.push_back(
-      {.scene = scene_.name,
-       .model = model,
-       .size = points,
-       .variant = series.variant,
-       .time = *time,
-       .evaluations = model == Model::chain ? solution.evaluations : solution.steps,
-       .rms_over_length = error_of(scene_, solution.shape, reference_.rod)});
-}
-
-/// Runs a foreign program with N points. After a failure larger N are still tried, but not after a
-/// run that reached the time limit.
-void StaticRuns::run_program(StaticSeries& series, int points) {
-  BenchmarkRun run{.scene = scene_.name, .program = series.program->name, .size = points};
-  const double growth = series.last_points > 0 ? 1.0 * points / series.last_points : 1;
-  ForeignRun result;
-  std::vector<double> times;
-  double total = 0;
-  const auto again = [&] {
-    const auto count = static_cast<double>(times.size());
-    const bool time_left = total + total / count < watch_.left() / 4;
-    return result.problem.empty() && count < options_.repeats && time_left;
-  };
-  const bool ran = watch_.run_once(
-      fmt::format("{}: {}", scene_.name, name_of(run)), series.last_s * growth * growth, [&] {
-        do {
-          result = run_foreign(*series.program, scene_, points, options_.program_time_limit);
-          times.push_back(result.seconds);
-          total += result.seconds;
-        } while (again());
-      });
-  if (!ran || result.too_long) series.sizes.clear();
-  if (!ran) return;
-  std::string problem = std::move(result.problem);
-  if (problem.empty()) {
-    try {
-      run.rms_over_length =
-          foreign_deviation(scene_, *result.shape, reference_.rod.sample).rms_over_length;
-    } catch (const InputError& error) {
-      problem = error.what();
+/// Runs a model or a program with one size. If a polygon or a program does not fit into the budget,
+/// or a program reaches its time limit, larger ones are not run; after another failure they are.
+void StaticRuns::run(StaticSeries& series, int size) {
+  const bool is_program = series.program != nullptr;
+  BenchmarkRun run{.scene = scene_.name, .model = series.model, .size = size};
+  if (is_program) run.program = series.program->name;
+  if (is_polygon(series.model)) run.variant = series.variant;
+  SimulatorRun foreign;
+  SolvedRun solved;
+  const auto work = [&] {
+    if (!is_program) {
+      solved = solved_run(scene_, series, size);
+      return solved.seconds;
     }
+    foreign = run_foreign(*series.program, scene_, size, options_.program_time_limit);
+    return foreign.problem.empty() ? foreign.seconds : std::nan("");
+  };
+  // The time is predicted to grow with N^3 for polygons and with N^2 for programs.
+  const int power = is_polygon(series.model) ? 3 : is_program ? 2 : 0;
+  const double growth = series.last_size > 0 ? std::pow(1.0 * size / series.last_size, power) : 1;
+  const std::optional<Timing> time =
+      watch_.time(fmt::format("{}: {}", scene_.name, name_of(run)), series.last_s * growth, work);
+  if ((!time && power > 0) || foreign.too_long) series.sizes.clear();
+  if (!time) return;
+  if (is_program) {
+    try {
+      if (foreign.shape) {
+        run.rms_over_length =
+            foreign_deviation(scene_, *foreign.shape, reference_.rod.sample).rms_over_length;
+      }
+    } catch (const InputError& error) {
+      foreign.problem = error.what();
+    }
+    if (!foreign.problem.empty()) {
+      failures_.push_back({scene_.name, run.program, size, foreign.problem});
+      return;
+    }
+  } else {
+    run.rms_over_length = series.model == Model::exact
+                              ? reference_.agreement
+                              : error_of(scene_, solved.shape, reference_.rod);
   }
-  if (!problem.empty()) {
-    failures_.push_back({scene_.name, series.program->name, points, std::move(problem)});
-    return;
-  }
-  run.time = timing_of(std::move(times));
-  series.last_s = run.time.median_s;
-  series.last_points = points;
+  run.evaluations = solved.evaluations;
+  run.time = *time;
+  series.last_s = time->median_s;
+  series.last_size = size;
   series.runs.push_back(std::move(run));
 }
 

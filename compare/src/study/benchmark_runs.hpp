@@ -23,10 +23,11 @@ class Stopwatch {
   void allow(double seconds) { until_ = this->seconds() + seconds; }
   [[nodiscard]] double left() const { return until_ - seconds(); }
 
-  /// Runs `work` repeatedly and returns its times. Returns std::nullopt if one run is predicted to
-  /// take more than a quarter of the remaining budget, or if `work` throws.
+  /// Runs `work` repeatedly, which returns its time [s], until the times are enough or one is NaN.
+  /// Returns std::nullopt if one run is predicted to take more than a quarter of the remaining
+  /// budget, or if `work` throws.
   [[nodiscard]] std::optional<Timing> time(const std::string& name, double predicted_s,
-                                           const std::function<void()>& work);
+                                           const std::function<double()>& work);
 
   /// Runs `work` once, which times its own parts, under the conditions of time(). @return false if
   /// it was skipped or has thrown
@@ -57,13 +58,13 @@ struct ReferenceShape {
 
 /// Static runs of one model over its sizes, in the order of their cost.
 struct StaticSeries {
-  Model model = Model::exact;
+  Model model = Model::energy;
   ForceVariant variant;                     ///< settings of chain and force
   const ForeignProgram* program = nullptr;  ///< foreign program in place of a model
   std::vector<int> sizes;                   ///< K or N of the runs that are left
   std::vector<BenchmarkRun> runs;
-  double last_s = 0;    ///< time of the previous run [s]
-  int last_points = 0;  ///< N of the previous run
+  double last_s = 0;  ///< time of the previous run [s]
+  int last_size = 0;  ///< K or N of the previous run
 };
 
 /// Static runs in rounds: the first size of every model, then the second and so on, so that a small
@@ -82,9 +83,7 @@ class StaticRuns {
   [[nodiscard]] const std::vector<BenchmarkFailure>& failures() const { return failures_; }
 
  private:
-  void run_continuous(StaticSeries& series, int terms);
-  void run_polygon(StaticSeries& series, int points);
-  void run_program(StaticSeries& series, int points);
+  void run(StaticSeries& series, int size);
 
   const Scene& scene_;
   const ReferenceShape& reference_;

@@ -1,8 +1,6 @@
 #include "suite/answer.hpp"
 
 #include <fmt/format.h>
-#include <tbb/parallel_for.h>
-#include <tbb/task_arena.h>
 
 #include <Eigen/Dense>
 #include <algorithm>
@@ -13,53 +11,13 @@
 #include "dlo/compare/error.hpp"
 #include "dlo/compare/shape.hpp"
 #include "dlo/compare/solve.hpp"
-#include "parallel/threads.hpp"
+#include "polygon/shape_loads.hpp"
 #include "record/solution_fields.hpp"
 #include "released/hinge_motion.hpp"
 #include "scene/scene_problem.hpp"
 
 namespace dlo::compare {
 namespace {
-
-/// Points with the load on each, in an order that begins at a held end.
-struct LoadedPoints {
-  Shape shape;
-  Eigen::Matrix3Xd weights;
-  Eigen::Matrix3Xd forces;  // all loads except weight
-
-  /// Returns the points in the opposite order.
-  [[nodiscard]] LoadedPoints reversed(double length) const {
-    LoadedPoints result = *this;
-    for (Eigen::Matrix3Xd* each : {&result.shape.points, &result.weights, &result.forces}) {
-      *each = each->rowwise().reverse().eval();
-    }
-    std::reverse(result.shape.arc_length.begin(), result.shape.arc_length.end());
-    for (double& s : result.shape.arc_length) s = length - s;
-    return result;
-  }
-};
-
-LoadedPoints loaded_points(const Scene& scene, const Shape& shape) {
-  const Eigen::Index n = shape.points.cols() - 1;
-  LoadedPoints result{shape, Eigen::Matrix3Xd::Zero(3, n + 1), Eigen::Matrix3Xd::Zero(3, n + 1)};
-  const std::vector<double>& s = shape.arc_length;
-  const auto at = [&](Eigen::Index i) { return s[static_cast<std::size_t>(i)]; };
-  for (Eigen::Index i = 0; i <= n; ++i) {
-    const double begin = i == 0 ? 0 : (at(i - 1) + at(i)) / 2;
-    const double end = i == n ? scene.length : (at(i) + at(i + 1)) / 2;
-    result.weights.col(i) = scene.weight_between(begin, end);
-    result.forces.col(i) = scene.distributed_between(begin, end);
-  }
-  for (const PointLoad& load : scene.loads) {
-    // A load between two points is distributed by the lever rule.
-    const auto after = std::upper_bound(s.begin() + 1, s.end() - 1, load.at);
-    const Eigen::Index i = after - s.begin();
-    const double share = std::clamp((load.at - at(i - 1)) / (at(i) - at(i - 1)), 0.0, 1.0);
-    result.forces.col(i - 1) += (1 - share) * load.force;
-    result.forces.col(i) += share * load.force;
-  }
-  return result;
-}
 
 /// Returns the moments about the inner points of all forces beyond them, as one column.
 Eigen::VectorXd moments_beyond(const Eigen::Matrix3Xd& points, const Eigen::Matrix3Xd& forces) {
@@ -72,22 +30,6 @@ Eigen::VectorXd moments_beyond(const Eigen::Matrix3Xd& points, const Eigen::Matr
     }
   }
   return moments;
-}
-
-/// Returns the moments about the inner points of unit reactions at the far end, one column per
-/// component: none, of a force, or of a force and a torque.
-Eigen::MatrixXd moments_of_end(const Eigen::Matrix3Xd& points, Eigen::Index unknown) {
-  const Eigen::Index n = points.cols() - 1;
-  Eigen::MatrixXd columns(3 * (n - 1), unknown);
-  for (Eigen::Index i = 1; i < n; ++i) {
-    const Eigen::Index row = 3 * (i - 1);
-    const Eigen::Vector3d arm = points.col(n) - points.col(i);
-    for (Eigen::Index k = 0; k < std::min<Eigen::Index>(unknown, 3); ++k) {
-      columns.block<3, 1>(row, k) = arm.cross(Eigen::Vector3d::Unit(k));
-    }
-    if (unknown == 6) columns.block<3, 3>(row, 3) = Eigen::Matrix3d::Identity();
-  }
-  return columns;
 }
 
 /// Returns EI kappa of the inner joints, without the joints adjacent to the ends: there discrete
@@ -116,40 +58,22 @@ Eigen::VectorXd bending_moments(const Scene& scene, const Shape& shape, double p
 }
 
 /// Returns MomentBalance::resolution for the scene's stiffness.
-double resolution(const Scene& scene, const LoadedPoints& rod) {
+double resolution(const Scene& scene, const PointForces& forces) {
   constexpr double of_second_order = 0.25;
-  const double h = scene.length / static_cast<double>(rod.shape.points.cols() - 1);
-  const double force = rod.weights.colwise().norm().sum() + rod.forces.colwise().norm().sum();
+  const double h = scene.length / static_cast<double>(forces.loads.cols() - 1);
+  const double force = forces.weights.colwise().norm().sum() + forces.loads.colwise().norm().sum();
   return of_second_order * h * h * force / scene.bending_stiffness();
 }
 
 /// Number of points of the chain with which a rod that stretches is compared.
 constexpr int fine_chain = 1024;
 
-/// Returns the answers of `certified` to all scenes, in their order, computed on several threads.
-template <typename Of>
-std::vector<Of> certify_each(const std::vector<BatteryScene>& scenes, int threads,
-                             const SolveOptions& options,
-                             Of (*certified)(const BatteryScene&, const SolveOptions&)) {
-  std::vector<Of> answers(scenes.size());
-  tbb::task_arena arena(arena_threads(threads));
-  execute(arena, [&] {
-    tbb::parallel_for(std::size_t{0}, scenes.size(),
-                      [&](std::size_t i) { answers[i] = certified(scenes[i], options); });
-  });
-  return answers;
-}
-
 double or_zero(double estimate) { return std::isfinite(estimate) ? estimate : 0; }
-
-double largest_distance(const Eigen::Matrix3Xd& a, const Eigen::Matrix3Xd& b) {
-  return std::sqrt((a - b).colwise().squaredNorm().maxCoeff());
-}
 
 AnswerBounds bounds_between(const Solution& a, const Solution& b) {
   AnswerBounds bounds;
-  bounds.points_m = largest_distance(a.shape.points, b.shape.points) + or_zero(a.error_estimate) +
-                    or_zero(b.error_estimate);
+  bounds.points_m = largest_distance({a.shape.points}, {b.shape.points}) +
+                    or_zero(a.error_estimate) + or_zero(b.error_estimate);
   for (std::size_t i = 0; i < a.grippers.size(); ++i) {
     bounds.forces_N.push_back((a.grippers[i].force - b.grippers[i].force).norm());
     bounds.torques_Nm.push_back((a.grippers[i].torque - b.grippers[i].torque).norm());
@@ -163,9 +87,9 @@ AnswerBounds bounds_between(const Solution& a, const Solution& b) {
 
 /// Adds every other equilibrium that the energy model finds to the answer, and sets the smallest
 /// eigenvalue of the answer itself.
-void look_for_others(Answer& answer, const SolveOptions& options) {
+void look_for_others(Answer& answer) {
   const std::vector<double>& s = answer.first.shape.arc_length;
-  const AllSolutions all = solve_all(answer.of.scene, options, s);
+  const AllSolutions all = solve_all(answer.of.scene, {}, s);
   const double length = answer.of.scene.length;
   const double large = magnitudes(answer.of.scene).energy;
   for (const Solution& one : all.solutions) {
@@ -205,9 +129,14 @@ std::optional<MomentBalance> moment_balance(const Scene& scene, const Shape& sha
     if (gripper.at != 0 && gripper.at != scene.length) return std::nullopt;
     (gripper.at == 0 ? first : last) = &gripper;
   }
-  LoadedPoints rod = loaded_points(scene, shape);
-  if (first == nullptr) {
-    rod = rod.reversed(scene.length);
+  Shape rod = shape;
+  PointForces forces = forces_on_points(scene, shape.arc_length);
+  if (first == nullptr) {  // the order begins at a held end
+    for (Eigen::Matrix3Xd* each : {&rod.points, &forces.weights, &forces.loads}) {
+      *each = each->rowwise().reverse().eval();
+    }
+    std::ranges::reverse(rod.arc_length);
+    for (double& s : rod.arc_length) s = scene.length - s;
     std::swap(first, last);
   }
   const Eigen::Index unknown = last == nullptr ? 0 : last->direction ? 6 : 3;
@@ -216,22 +145,30 @@ std::optional<MomentBalance> moment_balance(const Scene& scene, const Shape& sha
   const auto inside = [&](const auto& rows) {
     return rows.middleRows(3 * (from - 1), 3 * (to - from + 1)).eval();
   };
-  const Eigen::VectorXd bending = inside(bending_moments(scene, rod.shape, power));
+  const Eigen::VectorXd bending = inside(bending_moments(scene, rod, power));
   if (!(bending.norm() > 0)) return std::nullopt;
   constexpr double no_load = 1e-9;
-  const Eigen::VectorXd of_weight = inside(moments_beyond(rod.shape.points, rod.weights));
-  const Eigen::VectorXd of_loads = inside(moments_beyond(rod.shape.points, rod.forces));
+  const Eigen::VectorXd of_weight = inside(moments_beyond(rod.points, forces.weights));
+  const Eigen::VectorXd of_loads = inside(moments_beyond(rod.points, forces.loads));
   const bool has_weight = of_weight.norm() > no_load * bending.norm();
   const bool has_loads = of_loads.norm() > no_load * bending.norm();
   if (!has_weight && !has_loads && unknown == 0) return MomentBalance{.imbalance = 1};
   // The unknowns are the columns, and the right-hand side contains the rest. Without loads the
   // moments do not depend on the stiffness. With only weight or only other loads, the factors of
   // stiffness and load are inverse to each other, so that only the stiffness is fitted.
-  Eigen::MatrixXd columns = inside(moments_of_end(rod.shape.points, unknown));
+  Eigen::MatrixXd columns(bending.size(), 0);
   const auto append_column = [&](const Eigen::VectorXd& column) {
     columns.conservativeResize(Eigen::NoChange, columns.cols() + 1);
     columns.rightCols<1>() = column;
   };
+  // Components of the force and of the torque at the far end.
+  for (Eigen::Index k = 0; k < unknown; ++k) {
+    const Eigen::Vector3d unit = Eigen::Vector3d::Unit(k % 3);
+    Eigen::Matrix3Xd force = Eigen::Matrix3Xd::Zero(3, n + 1);
+    if (k < 3) force.col(n) = unit;
+    append_column(k < 3 ? inside(moments_beyond(rod.points, force))
+                        : Eigen::VectorXd(unit.replicate(to - from + 1, 1)));
+  }
   const bool both = has_weight && has_loads;
   if (both) append_column(of_weight);
   const bool any = has_weight || has_loads;
@@ -244,7 +181,7 @@ std::optional<MomentBalance> moment_balance(const Scene& scene, const Shape& sha
   if (any) result.stiffness = found[found.size() - 1];
   if (both) result.weight = found[found.size() - 2];
   constexpr double least = 1e-3;
-  result.resolution = resolution(scene, rod) / std::clamp(result.stiffness, least, 1.0);
+  result.resolution = resolution(scene, forces) / std::clamp(result.stiffness, least, 1.0);
   const double size = std::max(std::abs(result.stiffness) * bending.norm(), least * right.norm());
   result.imbalance = (columns * found - right).norm() / size;
   return result;
@@ -254,17 +191,17 @@ Model answer_model(const Scene& scene) {
   return scene.stretch != Stretch::none ? Model::exact : Model::energy;
 }
 
-Answer certified_answer(const BatteryScene& scene, const SolveOptions& options) {
+Answer certified_answer(const BatteryScene& scene) {
   const std::vector<double> s = equal_arc_lengths(scene.scene.length, answer_points);
   Answer answer{.of = scene};
-  answer.first = solve(scene.scene, answer_model(scene.scene), options, s);
+  answer.first = solve(scene.scene, answer_model(scene.scene), {}, s);
   if (scene.scene.stretch != Stretch::none) {
     Scene fine = scene.scene;
     fine.force_model.points = fine_chain;
-    answer.second = solve(fine, Model::chain, options, s);
+    answer.second = solve(fine, Model::chain, {}, s);
     answer.second_method = fmt::format("chain, N = {}", fine_chain);
   } else {
-    answer.second = solve(scene.scene, Model::exact, options, s);
+    answer.second = solve(scene.scene, Model::exact, {}, s);
     answer.second_method = to_string(Model::exact);
   }
   answer.bounds = bounds_between(answer.first, answer.second);
@@ -275,25 +212,19 @@ Answer certified_answer(const BatteryScene& scene, const SolveOptions& options) 
                                        scene.id, to_string(answer.first.model),
                                        answer.second_method, answer.bounds.points_m, agree));
   }
-  if (scene.scene.stretch == Stretch::none) look_for_others(answer, options);
+  if (scene.scene.stretch == Stretch::none) look_for_others(answer);
   return answer;
 }
 
-std::vector<Answer> certified_answers(const std::vector<BatteryScene>& scenes, int threads,
-                                      const SolveOptions& options) {
-  return certify_each(scenes, threads, options, certified_answer);
-}
-
-MotionAnswer certified_motion(const BatteryScene& scene, const SolveOptions& options) {
+MotionAnswer certified_motion(const BatteryScene& scene) {
   const double length = scene.scene.length;
   const ReleasedRod rod{scene.scene, scene.motion.value().begin};
   MotionAnswer answer{.of = scene,
                       .times = scene.motion->times(),
                       .arc_length = equal_arc_lengths(length, motion_points)};
-  ReleasedMotion fine = release_rod(rod, answer.times, answer.arc_length, fine_terms, options);
-  const ReleasedMotion coarse =
-      release_rod(rod, answer.times, answer.arc_length, fewer_terms, options);
-  const HingeLimit hinges = hinge_limit(rod, segments, answer.times, options);
+  ReleasedMotion fine = release_rod(rod, answer.times, answer.arc_length, fine_terms);
+  const ReleasedMotion coarse = release_rod(rod, answer.times, answer.arc_length, fewer_terms);
+  const HingeLimit hinges = hinge_limit(rod, segments, answer.times);
   answer.frames = std::move(fine.frames);
   answer.second_method =
       fmt::format("hinges, N = {}, {} and {}, extrapolated", segments, 2 * segments, 4 * segments);
@@ -306,11 +237,6 @@ MotionAnswer certified_motion(const BatteryScene& scene, const SolveOptions& opt
                                        agree));
   }
   return answer;
-}
-
-std::vector<MotionAnswer> certified_motions(const std::vector<BatteryScene>& scenes, int threads,
-                                            const SolveOptions& options) {
-  return certify_each(scenes, threads, options, certified_motion);
 }
 
 }  // namespace dlo::compare

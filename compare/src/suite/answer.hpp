@@ -55,11 +55,7 @@ inline constexpr double chain_agrees = 2e-4;
 
 /// Solves a scene by both methods, compares them, and searches for other equilibria.
 /// @throws ConvergenceError if a method does not converge, or if they do not agree
-[[nodiscard]] Answer certified_answer(const BatteryScene& scene, const SolveOptions& options = {});
-
-/// Computes certified_answer() of several scenes, in order. @param threads  0: all cores
-[[nodiscard]] std::vector<Answer> certified_answers(const std::vector<BatteryScene>& scenes,
-                                                    int threads, const SolveOptions& options = {});
+[[nodiscard]] Answer certified_answer(const BatteryScene& scene);
 
 /// Returns the model of the first method.
 [[nodiscard]] Model answer_model(const Scene& scene);
@@ -107,12 +103,6 @@ inline constexpr double motions_agree = 2e-4;
 
 /// Computes a motion by the energy model, and by chains of 24, 48 and 96 hinges (hinge_limit()).
 /// @throws ConvergenceError if a method does not reach the end, or if they do not agree
-[[nodiscard]] MotionAnswer certified_motion(const BatteryScene& scene,
-                                            const SolveOptions& options = {});
-
-/// Computes certified_motion() of several scenes, in order. @param threads  0: all cores
-[[nodiscard]] std::vector<MotionAnswer> certified_motions(const std::vector<BatteryScene>& scenes,
-                                                          int threads,
-                                                          const SolveOptions& options = {});
+[[nodiscard]] MotionAnswer certified_motion(const BatteryScene& scene);
 
 }  // namespace dlo::compare

@@ -12,7 +12,6 @@
 #include "dlo/compare/error.hpp"
 #include "dlo/compare/scene_file.hpp"
 #include "dlo/compare/shape.hpp"
-#include "suite/suite_files.hpp"
 #include "toml/strict_table.hpp"
 
 namespace dlo::compare {

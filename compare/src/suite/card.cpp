@@ -28,71 +28,25 @@ namespace {
 
 constexpr double none = std::numeric_limits<double>::quiet_NaN();
 
-/// Returns the points of a whole rod in the scene's frame, in the order of arc length: the file's
-/// arc lengths, or lengths along a curve through the points, scaled to the rod's length.
-/// @throws InputError if an arc length is not on the rod, or a held end is not at its gripper
-Shape laid_shape(const Scene& scene, const MeasuredShape& measured) {
-  const double length = scene.length;
-  const bool told = !measured.arc_length.empty();
-  Shape shape{told ? file_arc_lengths(measured, length) : lengths_along(measured.points),
-              measured.points};
-  if (!told) {
-    const double whole = shape.arc_length.back();
-    for (double& s : shape.arc_length) s *= length / whole;
-    shape.arc_length.back() = length;  // avoids a rounding error beyond the end
-  }
-  if (shape.arc_length.front() > shape.arc_length.back()) {
-    std::reverse(shape.arc_length.begin(), shape.arc_length.end());
-    shape.points = Eigen::Matrix3Xd(shape.points.rowwise().reverse());
-  }
-  const auto distance_of_ends = [&](bool reversed) {
-    double most = 0;
-    for (const Gripper& gripper : scene.grippers) {
-      if (gripper.at != 0 && gripper.at != length) continue;
-      const bool is_first = (gripper.at == 0) != reversed;
-      const Eigen::Index point = is_first ? 0 : shape.points.cols() - 1;
-      most = std::max(most, (shape.points.col(point) - gripper.position).norm());
-    }
-    return most;
-  };
-  if (distance_of_ends(true) < distance_of_ends(false)) {
-    shape.points = Eigen::Matrix3Xd(shape.points.rowwise().reverse());
-    std::reverse(shape.arc_length.begin(), shape.arc_length.end());
-    for (double& s : shape.arc_length) s = length - s;
-  }
-  require_held_ends(scene, shape, told);
-  return shape;
-}
-
-/// Computes the error of a run, and its shape in the scene's frame.
-void measure_run(const Scene& scene, const energy_model::Equilibrium& reference,
-                 const SimulatorRun& run, CardRun& result, std::vector<CardShape>& shapes) {
-  if (!run.shape) return;
-  try {
-    Shape shape = laid_shape(scene, *run.shape);
-    result.error = shape_deviation(scene, shape, reference.sample).rms_over_length;
-    shapes.push_back({.points = run.points, .shape = std::move(shape), .error = result.error});
-  } catch (const InputError& error) {
-    result.status = RunStatus::failed;
-    result.problem = error.what();
-  }
-}
-
 /// Runs a simulator with N, 2N and 4N points.
-/// @param measure  called with each run and its entry
+/// @param measure  called with each solved run; sets its error, or throws InputError
 CardScene run_scene(const BatteryScene& scene, const Simulator& simulator,
-                    const CardOptions& options,
-                    const std::function<void(const SimulatorRun&, CardRun&)>& measure) {
+                    const CardOptions& options, const std::function<void(SimulatorRun&)>& measure) {
   CardScene result{.id = scene.id, .group = scene.group, .order = none};
   for (const int factor : {1, 2, 4}) {
-    const int points = factor * options.points;
-    const SimulatorRun run =
-        kept_run(options.state, options.version, simulator, scene, points, options.time_limit);
-    CardRun& entry =
-        result.runs.emplace_back(CardRun{points, run.status, run.problem, none, run.seconds});
-    measure(run, entry);
+    SimulatorRun& run =
+        result.runs.emplace_back(kept_run(options.state, options.version, simulator, scene,
+                                          factor * options.points, options.time_limit));
+    try {
+      if (run.status == RunStatus::solved) measure(run);
+    } catch (const InputError& error) {
+      run.status = RunStatus::failed;
+      run.problem = error.what();
+    }
+    run.shape.reset();
+    run.motion.reset();
     // More points would not be supported either.
-    if (entry.status == RunStatus::not_supported) break;
+    if (run.status == RunStatus::not_supported) break;
   }
   return result;
 }
@@ -100,14 +54,16 @@ CardScene run_scene(const BatteryScene& scene, const Simulator& simulator,
 CardScene card_scene(const BatteryScene& scene, const energy_model::Equilibrium& reference,
                      const Simulator& simulator, const CardOptions& options) {
   std::vector<CardShape> shapes;
-  CardScene result =
-      run_scene(scene, simulator, options, [&](const SimulatorRun& run, CardRun& entry) {
-        measure_run(scene.scene, reference, run, entry, shapes);
-      });
+  CardScene result = run_scene(scene, simulator, options, [&](SimulatorRun& run) {
+    const bool told = !run.shape->arc_length.empty();
+    Shape shape =
+        laid_by_grippers(*run.shape, scene.scene, told ? ArcLengths::file : ArcLengths::chord);
+    require_held_ends(scene.scene, shape, told);
+    run.error = shape_deviation(scene.scene, shape, reference.sample).rms_over_length;
+    shapes.push_back({.points = run.points, .shape = std::move(shape), .error = run.error});
+  });
   result.order = convergence_order(shapes);
-  if (!shapes.empty()) {
-    result.causes = causes_of(scene.scene, reference, shapes);
-  }
+  if (!shapes.empty()) result.causes = causes_of(scene.scene, reference, shapes);
   return result;
 }
 
@@ -120,18 +76,11 @@ CardScene card_motion(const BatteryScene& scene, const MotionReference& referenc
                       const Simulator& simulator, const CardOptions& options) {
   std::vector<CardShape> errors;
   std::optional<MarkerMotion> finest;
-  CardScene result =
-      run_scene(scene, simulator, options, [&](const SimulatorRun& run, CardRun& entry) {
-        if (!run.motion) return;
-        try {
-          entry.error = motion_error(reference, *run.motion);
-          errors.push_back({.points = run.points, .shape = {}, .error = entry.error});
-          finest = run.motion;
-        } catch (const InputError& error) {
-          entry.status = RunStatus::failed;
-          entry.problem = error.what();
-        }
-      });
+  CardScene result = run_scene(scene, simulator, options, [&](SimulatorRun& run) {
+    run.error = motion_error(reference, *run.motion);
+    errors.push_back({.points = run.points, .shape = {}, .error = run.error});
+    finest = std::move(run.motion);
+  });
   result.order = convergence_order(errors);
   if (!finest || result.order >= converges || errors.back().error <= hardly_off) return result;
   result.causes = motion_causes(reference, *finest);
@@ -146,7 +95,7 @@ void add_scene(CardGroup& group, const CardScene& scene) {
      : status == RunStatus::not_judged    ? group.not_judged
                                           : group.failed);
   if (scene.right()) ++group.right;
-  for (const CardRun& run : scene.runs) group.seconds += run.seconds;
+  for (const SimulatorRun& run : scene.runs) group.seconds += run.seconds;
   for (const Cause& cause : scene.causes) {
     const auto known = std::find_if(group.causes.begin(), group.causes.end(),
                                     [&](const auto& one) { return one.first == cause.name; });
@@ -197,7 +146,7 @@ std::function<CardScene(const Simulator&)> scene_judge(const BatteryScene& scene
                                                        const CardOptions& options) {
   try {
     if (scene.motion) {
-      return [&, reference = motion_reference(scene, {})](const Simulator& simulator) {
+      return [&, reference = motion_reference(scene)](const Simulator& simulator) {
         return card_motion(scene, reference, simulator, options);
       };
     }
@@ -207,10 +156,11 @@ std::function<CardScene(const Simulator&)> scene_judge(const BatteryScene& scene
     };
   } catch (const ConvergenceError& error) {
     return [&, problem = std::string(error.what())](const Simulator&) -> CardScene {
-      return {.id = scene.id,
-              .group = scene.group,
-              .runs = {{options.points, RunStatus::not_judged, problem, none, 0}},
-              .order = none};
+      return {
+          .id = scene.id,
+          .group = scene.group,
+          .runs = {{.points = options.points, .status = RunStatus::not_judged, .problem = problem}},
+          .order = none};
     };
   }
 }
@@ -218,14 +168,14 @@ std::function<CardScene(const Simulator&)> scene_judge(const BatteryScene& scene
 }  // namespace
 
 RunStatus CardScene::status() const {
-  for (const CardRun& run : runs) {
+  for (const SimulatorRun& run : runs) {
     if (run.status != RunStatus::solved) return run.status;
   }
   return RunStatus::solved;
 }
 
 std::string CardScene::problem() const {
-  for (const CardRun& run : runs) {
+  for (const SimulatorRun& run : runs) {
     if (run.status != RunStatus::solved) return run.problem;
   }
   return {};

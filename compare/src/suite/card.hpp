@@ -13,31 +13,20 @@
 
 namespace dlo::compare {
 
-/// Run of a simulator with N points.
-struct CardRun {
-  int points = 0;                        ///< N
-  RunStatus status = RunStatus::failed;  ///< how the run ended
-  std::string problem;                   ///< one line; empty if there is a shape
-  /// RMS distance from the reference, divided by the length, or for a motion by
-  /// MotionReference::travel [-]; NaN without a shape
-  double error = 0;
-  double seconds = 0;  ///< wall time of the simulator [s]
-};
-
 /// Results of a simulator on one scene.
 struct CardScene {
-  std::string id;             ///< id of the scene
-  std::string group;          ///< class of the scene
-  std::vector<CardRun> runs;  ///< in the order of N
-  double order = 0;           ///< convergence_order(); NaN if unknown
-  std::vector<Cause> causes;  ///< identified causes of the error
+  std::string id;                  ///< id of the scene
+  std::string group;               ///< class of the scene
+  std::vector<SimulatorRun> runs;  ///< in the order of N, without their shapes and motions
+  double order = 0;                ///< convergence_order(); NaN if unknown
+  std::vector<Cause> causes;       ///< identified causes of the error
 
   /// Returns `solved` if all runs are solved, else the status of the first run that is not.
   [[nodiscard]] RunStatus status() const;
   /// Returns the problem of the first run that is not solved; empty if all are.
   [[nodiscard]] std::string problem() const;
-  /// Whether all runs are solved, no cause is a defect, and CardRun::error at the largest N is at
-  /// most 1 %, the default tolerance of `dlo check`.
+  /// Whether all runs are solved, no cause is a defect, and SimulatorRun::error at the largest N is
+  /// at most 1 %, the default tolerance of `dlo check`.
   [[nodiscard]] bool right() const;
 };
 

@@ -18,7 +18,7 @@ Json cause_json(const Cause& cause) {
           {"words", cause.words}};
 }
 
-Json run_json(const CardRun& run) {
+Json run_json(const SimulatorRun& run) {
   return {{"points", run.points},
           {"status", to_string(run.status)},
           {"problem", run.problem},
@@ -73,7 +73,7 @@ Regression judge_cards(const std::vector<BaselineCase>& baseline, const std::vec
     for (const CardScene& scene : card.scenes) {
       compared.emplace(scene.id, card.simulator);
       if (scene.status() == RunStatus::not_supported) continue;
-      for (const CardRun& run : scene.runs) {
+      for (const SimulatorRun& run : scene.runs) {
         BaselineCase entry{.scene = scene.id, .program = card.simulator, .points = run.points};
         entry.errors.rms = run.error;
         measured.push_back({std::move(entry), run.problem});

@@ -13,17 +13,16 @@
 #include "dlo/compare/explanation.hpp"
 #include "dlo/compare/reference.hpp"
 #include "dlo/compare/shape_check.hpp"
+#include "explain/cause_limits.hpp"
 #include "explain/own_polygon.hpp"
+#include "explain/scene_causes.hpp"
 #include "polygon/scalar_search.hpp"
 #include "suite/answer.hpp"
 
 namespace dlo::compare {
 namespace {
 
-bool has_weight_only(const Scene& scene) {
-  return scene.loads.empty() && scene.distributed_loads.empty() &&
-         scene.weight_per_length().norm() > 0;
-}
+namespace limits = cause_limits;
 
 /// Whether the excess of the apparent weight over the scene's is proportional to the number of
 /// elements. Above twice the weight the cause is rather springs whose stiffness depends on N and
@@ -39,54 +38,38 @@ bool grows_with_elements(const StiffnessFactor& coarse, const StiffnessFactor& f
 }
 
 constexpr double undefined = std::numeric_limits<double>::quiet_NaN();
-/// Largest fraction of the error that a chain of hinges may leave to be accepted as its cause.
-constexpr double chain_may_leave = 0.05;
-/// Largest fraction of the error that another equilibrium may leave.
-constexpr double may_be_left = 0.1;
-/// Largest fraction of the error that the scene without one of its properties may leave. It is
-/// small because a shape that has hardly moved is also close to that scene's.
-constexpr double may_be_left_without = 0.03;
-/// Largest fraction of the error that the scene without a property may leave if the shapes converge
-/// to that scene.
-constexpr double may_be_left_of_way = 0.3;
-/// Largest fraction of the error that a cause with a fitted number may leave. It is small because
-/// any fitted number reduces the error.
-constexpr double may_be_left_fitted = 0.02;
-/// Largest fraction of the error that a fitted cause may leave for the second finest shape, if the
-/// finest one satisfies may_be_left_fitted. The rest is discretisation error.
-constexpr double may_be_left_coarse = 0.3;
-/// Largest fraction of the error that a cause may leave if the shape is out of balance.
-constexpr double nothing_left = 2e-3;
-/// Order from which a simulator is considered to converge, and order up to which it does not
-/// converge to the rod.
-constexpr double second_order = 1.6;
-constexpr double no_order = 0.4;
-/// Order from which shapes are considered to approach another rod; it is smaller since boundary
-/// layers may hardly be resolved.
-constexpr double some_order = 1.2;
-/// Imbalance of the moments above which a shape is not at rest.
-constexpr double out_of_balance = 0.02;
-/// Error that needs no cause, divided by the length: 1e-3 of the default tolerance. The thickness
-/// of a real rod causes errors of this size.
-constexpr double negligible_error = 1e-5;
 
 class Diagnosis {
  public:
   Diagnosis(const Scene& scene, const energy_model::Equilibrium& reference,
-            const std::vector<CardShape>& shapes, const SolveOptions& options)
-      : scene_(scene), reference_(reference), shapes_(shapes), options_(options) {}
+            const std::vector<CardShape>& shapes)
+      : scene_(scene), reference_(reference), shapes_(shapes) {}
 
   [[nodiscard]] std::vector<Cause> run() {
     const double order = convergence_order(shapes_);
-    const bool converges = !(finest().error > error_floor) || order > second_order;
-    if (look_at_chains(converges) || converges || finest().error <= negligible_error) return found_;
+    const bool converges = !(finest().error > error_floor) || order > limits::second_order;
+    // A rod that stretches is compared only with those of scenes that lack a property.
+    const bool stretches = scene_.stretch != Stretch::none;
+    if (!stretches && look_at_chains(converges)) return found_;
+    if (converges || finest().error <= limits::negligible_error) return found_;
     // Discretisation error without a specific cause.
-    if (order > no_order && !stays()) return found_;
-    if (look_at_neglected() || look_at_states() ||
-        look_at_springs(coarsest(), may_be_left_fitted) || look_at_rest() || look_at_stiffness()) {
-      return found_;
-    }
-    look_at_scene(may_be_left_fitted);
+    if (order > limits::no_order && !stays()) return found_;
+    const auto compare_factors = [this](auto fit, const CardShape& coarser, double may_leave) {
+      const std::optional<double> fine = (this->*fit)(finest(), limits::fitted_left);
+      const std::optional<double> coarse = fine ? (this->*fit)(coarser, may_leave) : std::nullopt;
+      if (!coarse) return false;
+      found_.push_back(
+          cause_of_factors(scene_, {coarser.points, *coarse}, {finest().points, *fine}));
+      return true;
+    };
+    const auto springs = &Diagnosis::spring_factor;
+    const auto modulus = &Diagnosis::modulus_factor;
+    (void)(look_at_neglected() || stretches || look_at_states() ||
+           compare_factors(springs, coarsest(), limits::fitted_left) || look_at_rest() ||
+           compare_factors(modulus, coarsest(), limits::fitted_left) ||
+           compare_factors(modulus, second_finest(), limits::coarse_left) ||
+           compare_factors(springs, second_finest(), limits::coarse_left) ||
+           look_at_scene(limits::fitted_left));
     return found_;
   }
 
@@ -102,7 +85,7 @@ class Diagnosis {
   [[nodiscard]] bool stays() const {
     constexpr double small = 5e-3;
     if (shapes_.size() < 3 || finest().error < small) return false;
-    return convergence_order({shapes_.end() - 2, shapes_.end()}) < no_order;
+    return convergence_order({shapes_.end() - 2, shapes_.end()}) < limits::no_order;
   }
 
   void add(std::string name, double factor, std::string words) {
@@ -112,17 +95,17 @@ class Diagnosis {
   /// Searches for a chain that fits the shapes. @return whether they are those of a chain of hinges
   /// with springs EI/h
   bool look_at_chains(bool converges) {
-    // The chains are inextensible.
-    if (scene_.stretch != Stretch::none || !(coarsest().error > error_floor)) return false;
+    if (!(coarsest().error > error_floor)) return false;
     const std::optional<OwnPolygon> best =
-        nearest_chain(coarsest(), Springs::as_the_rod, chain_may_leave);
+        nearest_chain(coarsest(), Springs::as_the_rod, limits::chain_left);
     if (!best) return false;
     // The finest shape excludes an accidental fit of the coarsest one.
     const std::vector<OwnPolygon> fine = own_polygons(scene_, finest().shape, Springs::as_the_rod);
     const auto same = std::find_if(fine.begin(), fine.end(), [&](const OwnPolygon& chain) {
       return chain.clamp == best->clamp;
     });
-    if (same == fine.end() || !(same->rms_m <= chain_may_leave * error_m(finest()))) return false;
+    if (same == fine.end() || !(same->rms_m <= limits::chain_left * error_m(finest())))
+      return false;
     const bool is_clamped =
         std::any_of(scene_.grippers.begin(), scene_.grippers.end(),
                     [](const Gripper& gripper) { return gripper.direction.has_value(); });
@@ -160,10 +143,9 @@ class Diagnosis {
 
   [[nodiscard]] std::optional<double> modulus_factor(const CardShape& shape,
                                                      double may_leave) const {
-    if (scene_.stretch != Stretch::none) return std::nullopt;
     try {
       const EffectiveModulus modulus =
-          fit_effective_modulus(scene_, distance_from(shape.shape), reference_, options_);
+          fit_effective_modulus(scene_, distance_from(shape.shape), reference_);
       if (!is_identified(modulus.optimum)) return std::nullopt;
       if (!(modulus.rms_m <= may_leave * error_m(shape))) return std::nullopt;
       return modulus.ratio;
@@ -172,48 +154,20 @@ class Diagnosis {
     }
   }
 
-  void add_factors(const CardShape& coarser, double coarse, double fine) {
-    found_.push_back(cause_of_factors(scene_, {coarser.points, coarse}, {finest().points, fine}));
-  }
-
-  /// Compares fitted springs of two shapes. @param may_leave  fraction of the coarser shape's error
-  bool look_at_springs(const CardShape& coarser, double may_leave) {
-    if (scene_.stretch != Stretch::none) return false;
-    const std::optional<double> coarse = spring_factor(coarser, may_leave);
-    const std::optional<double> fine =
-        coarse ? spring_factor(finest(), may_be_left_fitted) : std::nullopt;
-    if (!fine) return false;
-    add_factors(coarser, *coarse, *fine);
-    return true;
-  }
-
-  bool look_at_stiffness() {
-    const std::optional<double> fine = modulus_factor(finest(), may_be_left_fitted);
-    if (!fine) return look_at_springs(second_finest(), may_be_left_coarse);
-    if (const auto coarse = modulus_factor(coarsest(), may_be_left_fitted)) {
-      add_factors(coarsest(), *coarse, *fine);
-      return true;
-    }
-    const std::optional<double> coarse = modulus_factor(second_finest(), may_be_left_coarse);
-    if (coarse) add_factors(second_finest(), *coarse, *fine);
-    return coarse.has_value();
-  }
-
   /// Whether the shape is that of a scene without one of its properties.
   bool look_at_one_neglected(const Scene& without, const std::string& name) {
     try {
-      const energy_model::Equilibrium rod =
-          solve_reference(without, answer_model(without), options_);
+      const energy_model::Equilibrium rod = solve_reference(without, answer_model(without));
       const auto left = [&](const CardShape& shape) {
         return distance(shape.shape, rod.sample) / scene_.length;
       };
       const double fine = left(finest());
-      const bool is_near = fine <= may_be_left_without * finest().error;
+      const bool is_near = fine <= limits::without_left * finest().error;
       // The shapes may also converge to that rod, if the finest one is much closer to it than to
       // the reference.
-      const bool comes_near = fine <= may_be_left_of_way * finest().error &&
+      const bool comes_near = fine <= limits::coarse_left * finest().error &&
                               convergence_order({{coarsest().points, {}, left(coarsest())},
-                                                 {finest().points, {}, fine}}) > some_order;
+                                                 {finest().points, {}, fine}}) > limits::some_order;
       if (!is_near && !comes_near) return false;
       add(name, undefined, "the shape is that of the scene without it");
       return true;
@@ -255,10 +209,11 @@ class Diagnosis {
   /// Whether the shape is another equilibrium of the scene.
   bool look_at_states() {
     constexpr double small = 1e-3;
-    if (scene_.stretch != Stretch::none || finest().error < small) return false;
+    if (finest().error < small) return false;
     try {
-      for (const energy_model::Equilibrium& state : reference_states(scene_, options_)) {
-        if (!(distance(finest().shape, state.sample) <= may_be_left * error_m(finest()))) continue;
+      for (const energy_model::Equilibrium& state : reference_states(scene_)) {
+        if (!(distance(finest().shape, state.sample) <= limits::state_left * error_m(finest())))
+          continue;
         const bool unstable = state.status == energy_model::SolveStatus::saddle;
         add(unstable ? "unstable equilibrium" : "other equilibrium", undefined,
             unstable ? "the shape is an equilibrium that is unstable"
@@ -288,7 +243,7 @@ class Diagnosis {
     if (!seen.is_bracketed()) return false;
     const Minimum best = minimum_near(of_finest, seen);
     if (!(best.value < balanced) || std::abs(best.x - 1) < other) return false;
-    if (!(left(coarsest(), best.x) < out_of_balance)) return false;
+    if (!(left(coarsest(), best.x) < limits::out_of_balance)) return false;
     add("springs with a power of the angle", best.x,
         fmt::format("moments balance if they go with the power {:.2g} of the joints' angles",
                     best.x));
@@ -299,7 +254,7 @@ class Diagnosis {
     const std::optional<MomentBalance> balance = moment_balance(scene_, finest().shape);
     if (!balance) return false;
     constexpr double as_it_is = 0.03;
-    if (!(balance->imbalance > out_of_balance)) {
+    if (!(balance->imbalance > limits::out_of_balance)) {
       if (std::abs(balance->stiffness - 1) > as_it_is || std::abs(balance->weight - 1) < as_it_is) {
         return false;
       }
@@ -310,7 +265,7 @@ class Diagnosis {
     if (look_at_power()) return true;
     if (balance->imbalance <= balance->resolution) return false;
     // A shape with loads other than the scene's is out of balance too.
-    if (look_at_scene(nothing_left)) return true;
+    if (look_at_scene(limits::unbalanced_left)) return true;
     add("not at rest", balance->imbalance,
         fmt::format("no forces at its ends balance {:.2g} % of its bending moments, whatever the "
                     "stiffness is",
@@ -321,11 +276,10 @@ class Diagnosis {
   /// Searches the explanations of `dlo check` for a cause.
   /// @param left  fraction of the error that it may leave
   bool look_at_scene(double left) {
-    if (scene_.stretch != Stretch::none) return false;
     try {
       const MeasuredShape shape =
           shape_of(finest().shape.points, finest().shape.arc_length, "its shape");
-      const ShapeCheckOptions options{.modulus = ModulusSearch::no, .solve = options_};
+      const ShapeCheckOptions options{.modulus = ModulusSearch::no};
       const ShapeCheck check = check_shape(scene_, shape, options);
       const std::vector<Explanation> all = explain_shape(scene_, shape, check, options);
       for (const Explanation& one : all) {
@@ -343,7 +297,6 @@ class Diagnosis {
   const Scene& scene_;
   const energy_model::Equilibrium& reference_;
   const std::vector<CardShape>& shapes_;
-  const SolveOptions& options_;
   std::vector<Cause> found_;
 };
 
@@ -359,7 +312,7 @@ Cause cause_of_factors(const Scene& scene, const StiffnessFactor& coarse,
   const std::string both =
       fmt::format("bending stiffness is {:.3g} times EI with N = {} and {:.3g} times with N = {}",
                   coarse.factor, coarse.points, fine.factor, fine.points);
-  if (has_weight_only(scene) && grows_with_elements(coarse, fine)) {
+  if (is_pulled_by_weight_alone(scene) && grows_with_elements(coarse, fine)) {
     // A ball of the caps' radius r on each element of length h adds 4 r / (3 h) of its weight.
     const double h = scene.length / (fine.points - 1);
     return {"weight with caps", 1 / fine.factor,
@@ -385,7 +338,7 @@ Cause cause_of_factors(const Scene& scene, const StiffnessFactor& coarse,
   if (std::abs(power) < near_power) {
     return {"bending stiffness wrong", fine.factor,
             fmt::format("the bending stiffness is {:.3g} times the scene's{}", fine.factor,
-                        has_weight_only(scene)
+                        is_pulled_by_weight_alone(scene)
                             ? fmt::format(", or the weight {:.3g} times", 1 / fine.factor)
                             : "")};
   }
@@ -402,8 +355,8 @@ double convergence_order(const std::vector<CardShape>& shapes) {
 }
 
 std::vector<Cause> causes_of(const Scene& scene, const energy_model::Equilibrium& reference,
-                             const std::vector<CardShape>& shapes, const SolveOptions& options) {
-  return Diagnosis(scene, reference, shapes, options).run();
+                             const std::vector<CardShape>& shapes) {
+  return Diagnosis(scene, reference, shapes).run();
 }
 
 }  // namespace dlo::compare

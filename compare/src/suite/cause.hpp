@@ -43,8 +43,7 @@ inline constexpr double error_floor = 1e-7;
 /// @param shapes     in the order of N, at least one
 [[nodiscard]] std::vector<Cause> causes_of(const Scene& scene,
                                            const energy_model::Equilibrium& reference,
-                                           const std::vector<CardShape>& shapes,
-                                           const SolveOptions& options = {});
+                                           const std::vector<CardShape>& shapes);
 
 /// Bending stiffness that fits a shape with N points best.
 struct StiffnessFactor {
@@ -72,8 +71,7 @@ struct MotionReference {
 
 /// Computes the reference of a scene that has a motion. @throws InputError, ConvergenceError as
 /// release_rod()
-[[nodiscard]] MotionReference motion_reference(const BatteryScene& scene,
-                                               const SolveOptions& options = {});
+[[nodiscard]] MotionReference motion_reference(const BatteryScene& scene);
 
 /// Returns the RMS distance of all recorded points from the reference at their times and arc
 /// lengths, divided by the reference's travel. @throws InputError if a point is not on the rod, a

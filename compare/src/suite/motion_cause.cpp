@@ -9,6 +9,7 @@
 #include "dlo/compare/error.hpp"
 #include "dlo/compare/reference.hpp"
 #include "dlo/compare/shape.hpp"
+#include "explain/cause_limits.hpp"
 #include "polygon/scalar_search.hpp"
 #include "recording/motion_residuals.hpp"
 #include "released/hinge_motion.hpp"
@@ -24,10 +25,6 @@ constexpr int frames_per_asked = 8;
 /// compared.
 constexpr double beyond = 1.5;
 constexpr int terms = 12;
-/// Largest fraction of the error that a cause may leave: without a fitted number, and with one.
-constexpr double may_leave_plain = 0.1;
-constexpr double may_leave_fitted = 0.3;
-
 /// Position of the rod with a cause.
 using RodAt = std::function<Eigen::Vector3d(double time, double arc_length)>;
 
@@ -39,87 +36,71 @@ double rms_from(const MarkerMotion& recorded, const RodAt& rod) {
   return std::sqrt(squares / static_cast<double>(recorded.positions.size()));
 }
 
-/// Fitted number of a cause, and the RMS error that it leaves [m].
-struct Fitted {
-  double value = 0;
-  double left = std::numeric_limits<double>::infinity();
-};
+/// Causes with the RMS distance that each leaves [m].
+using CausesLeft = std::vector<std::pair<Cause, double>>;
 
-Fitted best_of(const MarkerMotion& recorded, double low, double high,
-               const std::function<RodAt(double)>& rod_with) {
+/// Returns the fitted number of a cause with the RMS distance that it leaves [m]; that is infinite
+/// if the best number is at an end of its range. @param left  distance with a number
+Minimum best_of(double low, double high, const Function& left) {
   constexpr int steps = 100;
-  const Function left = [&](double value) { return rms_from(recorded, rod_with(value)); };
   const Scan seen = scan(left, low, high, steps);
-  if (!seen.is_bracketed()) return {};
-  const Minimum found = minimum_near(left, seen);
-  return {found.x, found.value};
+  if (!seen.is_bracketed()) return {0, std::numeric_limits<double>::infinity()};
+  return minimum_near(left, seen);
 }
 
-/// Returns the causes without a fitted number, with the error that each leaves [m].
-std::vector<std::pair<Cause, double>> plain_causes(const MotionReference& reference,
-                                                   const MarkerMotion& recorded) {
+CausesLeft plain_causes(const MotionReference& reference, const MarkerMotion& recorded) {
   constexpr double none = std::numeric_limits<double>::quiet_NaN();
-  std::vector<std::pair<Cause, double>> causes;
-  causes.emplace_back(
-      Cause{.name = "does not move", .factor = none, .words = "it stays where it begins"},
-      rms_from(recorded, [&](double, double s) { return reference.motion.at(0, s); }));
-  causes.emplace_back(
-      Cause{.name = "inertia ignored",
-            .factor = none,
-            .words = "it is at rest at every time, in the equilibrium of the scene"},
-      rms_from(recorded, [&](double, double s) { return reference.at_rest.at(0, s); }));
-  return causes;
+  const auto left = [&](const ModelMotion& rod) {
+    return rms_from(recorded, [&](double, double s) { return rod.at(0, s); });
+  };
+  return {
+      {{"does not move", none, "it stays where it begins"}, left(reference.motion)},
+      {{"inertia ignored", none, "it is at rest at every time, in the equilibrium of the scene"},
+       left(reference.at_rest)}};
 }
 
-std::vector<std::pair<Cause, double>> fitted_causes(const MotionReference& reference,
-                                                    const MarkerMotion& recorded) {
-  std::vector<std::pair<Cause, double>> causes;
+CausesLeft fitted_causes(const MotionReference& reference, const MarkerMotion& recorded) {
+  CausesLeft causes;
   const ModelMotion& model = reference.motion;
   if (const auto lag =
           best_lag(recorded, model, -std::numeric_limits<double>::infinity(), Displacement::none)) {
-    causes.emplace_back(Cause{.name = "late or early",
-                              .factor = lag->lag / reference.until,
-                              .words = fmt::format("it is {:.3g} ms {}", std::abs(lag->lag) * 1e3,
-                                                   lag->lag > 0 ? "late" : "early")},
-                        lag->rms_m);
+    causes.push_back({{"late or early", lag->lag / reference.until, lag_words(*lag)}, lag->rms_m});
   }
-  const Fitted faster = best_of(recorded, 1 / beyond, beyond, [&](double factor) -> RodAt {
-    return [&, factor](double time, double s) { return model.at(factor * time, s); };
+  const Minimum faster = best_of(1 / beyond, beyond, [&](double factor) {
+    return rms_from(recorded, [&](double time, double s) { return model.at(factor * time, s); });
   });
-  causes.emplace_back(Cause{.name = "frequency wrong",
-                            .factor = faster.value,
-                            .words = fmt::format("all goes {:.4g} times as fast", faster.value)},
-                      faster.left);
+  causes.push_back(
+      {{"frequency wrong", faster.x, fmt::format("all goes {:.4g} times as fast", faster.x)},
+       faster.value});
   constexpr double most = 10;  // e-foldings over the whole time
-  const Fitted damped = best_of(recorded, 0, most / reference.until, [&](double rate) -> RodAt {
-    return [&, rate](double time, double s) -> Eigen::Vector3d {
+  const Minimum damped = best_of(0, most / reference.until, [&](double rate) {
+    return rms_from(recorded, [&](double time, double s) -> Eigen::Vector3d {
       const Eigen::Vector3d rest = reference.at_rest.at(0, s);
       return rest + std::exp(-rate * time) * (model.at(time, s) - rest);
-    };
+    });
   });
-  const double stays = std::exp(-damped.value * reference.until);
-  causes.emplace_back(Cause{.name = "damped",
-                            .factor = stays,
-                            .words = fmt::format("{:.3g} % of the motion is left at the end, and "
-                                                 "nothing damps the rod",
-                                                 stays * 100)},
-                      damped.left);
+  const double stays = std::exp(-damped.x * reference.until);
+  causes.push_back({{"damped", stays,
+                     fmt::format("{:.3g} % of the motion is left at the end, and nothing damps the "
+                                 "rod",
+                                 stays * 100)},
+                    damped.value});
   return causes;
 }
 
 }  // namespace
 
-MotionReference motion_reference(const BatteryScene& scene, const SolveOptions& options) {
+MotionReference motion_reference(const BatteryScene& scene) {
   const BatteryMotion& asked = scene.motion.value();
   const double length = scene.scene.length;
   const std::vector<double> s = equal_arc_lengths(length, points_along);
   const double end = beyond * asked.until;
   const int count = static_cast<int>(std::ceil(beyond * frames_per_asked * (asked.frames - 1))) + 1;
   ReleasedMotion moved =
-      release_rod({scene.scene, asked.begin}, equal_arc_lengths(end, count), s, terms, options);
+      release_rod({scene.scene, asked.begin}, equal_arc_lengths(end, count), s, terms);
   constexpr std::size_t fewest_frames = 4;
   const std::vector<Eigen::Matrix3Xd> at_rest(
-      fewest_frames, solve_reference(scene.scene, Model::energy, options).sample(s).points);
+      fewest_frames, solve_reference(scene.scene, Model::energy).sample(s).points);
   MotionReference reference{.motion = ModelMotion(0, end, length, std::move(moved.frames)),
                             .length = length,
                             .until = asked.until,
@@ -137,27 +118,19 @@ MotionReference motion_reference(const BatteryScene& scene, const SolveOptions& 
 
 double motion_error(const MotionReference& reference, const MarkerMotion& recorded) {
   const double interval = reference.until / (reference.frames - 1);
-  int times = 0;
-  double before = -std::numeric_limits<double>::infinity();
   constexpr double rounding = 1e-6;
-  for (const MarkerPosition& at : recorded.positions) {
-    if (!on_rod(at.arc_length, reference.length)) {
-      throw InputError(fmt::format("a point at s = {:g} m (allowed: 0 to the rod's {:g} m)",
-                                   at.arc_length, reference.length));
-    }
-    if (!(at.time >= -rounding * interval && at.time <= reference.until + rounding * interval)) {
-      throw InputError(
-          fmt::format("a frame at {:g} s (allowed: 0 to {:g} s)", at.time, reference.until));
-    }
-    times += at.time > before ? 1 : 0;
-    before = at.time;
+  const RecordedTimes times = recorded_times(recorded, reference.length);
+  for (const double end : {times.first, times.last}) {
+    if (end >= -rounding * interval && end <= reference.until + rounding * interval) continue;
+    throw InputError(fmt::format("a frame at {:g} s (allowed: 0 to {:g} s)", end, reference.until));
   }
-  const double first = recorded.positions.front().time;
-  if (2 * times < reference.frames || first > interval || before < reference.until - interval) {
+  if (2 * times.count < reference.frames || times.first > interval ||
+      times.last < reference.until - interval) {
     throw InputError(fmt::format(
         "{} frames from {:g} to {:g} s (allowed: {} or more, from 0 to {:g} s, each end within "
         "{:g} s)",
-        times, first, before, (reference.frames + 1) / 2, reference.until, interval));
+        times.count, times.first, times.last, (reference.frames + 1) / 2, reference.until,
+        interval));
   }
   return rms_of(motion_residuals(recorded, reference.motion)) / reference.travel;
 }
@@ -172,8 +145,9 @@ std::vector<Cause> motion_causes(const MotionReference& reference, const MarkerM
     few.positions.push_back(recorded.positions[i]);
   }
   for (const auto& [may_leave, search] :
-       {std::pair(may_leave_plain, &plain_causes), std::pair(may_leave_fitted, &fitted_causes)}) {
-    std::vector<std::pair<Cause, double>> causes = search(reference, few);
+       {std::pair(cause_limits::state_left, &plain_causes),
+        std::pair(cause_limits::fitted_motion_left, &fitted_causes)}) {
+    CausesLeft causes = search(reference, few);
     const auto best =
         std::ranges::min_element(causes, {}, [](const auto& one) { return one.second; });
     if (best->second <= may_leave * error) return {std::move(best->first)};

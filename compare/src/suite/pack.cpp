@@ -1,6 +1,8 @@
 #include "suite/pack.hpp"
 
 #include <fmt/format.h>
+#include <tbb/parallel_for.h>
+#include <tbb/task_arena.h>
 
 #include <cmath>
 #include <filesystem>
@@ -11,6 +13,7 @@
 #include "base/output_file.hpp"
 #include "dlo/compare/error.hpp"
 #include "dlo/compare/solution.hpp"
+#include "parallel/threads.hpp"
 #include "record/field.hpp"
 #include "record/solution_fields.hpp"
 #include "shape/write_vtk.hpp"
@@ -43,26 +46,36 @@ double bound_of_digits(double value, double size, double large) {
   return bound(value, rounding * std::max(size, large));
 }
 
-/// Rounding error of points, each coordinate rounded to twelve (nine) decimals [m].
-constexpr double place_rounding = 1e-12;
-constexpr double motion_place_rounding = 1e-9;
+/// Number of decimals of lengths [m], in a motion also of times [s]. Those of a motion suffice for
+/// its larger bounds.
+constexpr int answer_decimals = 12;
+constexpr int motion_decimals = 9;
 
-/// Rounds a length to twelve decimals; adding zero avoids -0.
-double place(double metres) {
-  return as_number<double>(fmt::format("{:.12f}", metres)).value() + 0.0;
+/// Returns the bound of points whose coordinates are rounded.
+double bound_of_points(double metres, int decimals, double unit = 1) {
+  return bound(metres / unit, std::pow(10, -decimals) / unit);
 }
 
-/// Rounds a length or time of a motion to nine decimals, which suffice for its larger bounds.
-double motion_place(double value) {
-  return as_number<double>(fmt::format("{:.9f}", value)).value() + 0.0;
+/// Rounds to decimals; adding zero avoids -0.
+double place(double value, int decimals) {
+  return as_number<double>(fmt::format("{:.{}f}", value, decimals)).value() + 0.0;
+}
+
+Json places(const std::vector<double>& values, int decimals) {
+  return json_list(values, [&](double value) -> Json { return place(value, decimals); });
+}
+
+Json point_json(const Eigen::Vector3d& point, int decimals) {
+  return places({point.x(), point.y(), point.z()}, decimals);
+}
+
+Json places(const Eigen::Matrix3Xd& points, int decimals) {
+  return json_list(points.colwise(),
+                   [&](const auto& point) { return point_json(point, decimals); });
 }
 
 Json answer_vector(const Eigen::Vector3d& vector, double large) {
   return {rounded(vector.x(), large), rounded(vector.y(), large), rounded(vector.z(), large)};
-}
-
-Json answer_point(const Eigen::Vector3d& point) {
-  return {place(point.x()), place(point.y()), place(point.z())};
 }
 
 Json answer_energies(const SceneEnergies& energy, double large) {
@@ -111,7 +124,7 @@ Json answer_obstacles(const Answer& answer, const Magnitudes& large) {
 Json answer_closed_form(const Answer& answer) {
   if (!answer.of.closed_form) return {};
   const ClosedForm& form = *answer.of.closed_form;
-  return {{"is", form.is}, {"at_m", form.at}, {"point_m", answer_point(form.point)}};
+  return {{"is", form.is}, {"at_m", form.at}, {"point_m", point_json(form.point, answer_decimals)}};
 }
 
 /// Writes one line for each key, and for each row of a list of lists or objects.
@@ -148,9 +161,9 @@ std::string answer_csv(const Answer& answer) {
   const Shape& shape = answer.first.shape;
   for (std::size_t i = 0; i < shape.arc_length.size(); ++i) {
     for (const double x : shape.points.col(static_cast<Eigen::Index>(i))) {
-      text += fmt::format("{:.12f},", place(x));
+      text += fmt::format("{:.12f},", place(x, answer_decimals));
     }
-    text += fmt::format("{:.12f}\n", place(shape.arc_length[i]));
+    text += fmt::format("{:.12f}\n", place(shape.arc_length[i], answer_decimals));
   }
   return text;
 }
@@ -158,8 +171,8 @@ std::string answer_csv(const Answer& answer) {
 /// Returns the points of an answer in VTK's XML format, for ParaView.
 std::string answer_vtu(const Answer& answer) {
   Shape shape = answer.first.shape;
-  shape.points = shape.points.unaryExpr(&place);
-  for (double& s : shape.arc_length) s = place(s);
+  for (double& x : shape.points.reshaped()) x = place(x, answer_decimals);
+  for (double& s : shape.arc_length) s = place(s, answer_decimals);
   return vtu_polyline(shape);
 }
 
@@ -169,9 +182,10 @@ std::string motion_csv(const MotionAnswer& answer) {
   for (std::size_t k = 0; k < answer.times.size(); ++k) {
     for (std::size_t i = 0; i < answer.arc_length.size(); ++i) {
       const Eigen::Vector3d point = answer.frames[k].col(static_cast<Eigen::Index>(i));
-      text += fmt::format("{},{},{},{},{}\n", motion_place(answer.times[k]),
-                          motion_place(answer.arc_length[i]), motion_place(point.x()),
-                          motion_place(point.y()), motion_place(point.z()));
+      std::vector<double> row = {answer.times[k], answer.arc_length[i], point.x(), point.y(),
+                                 point.z()};
+      for (double& value : row) value = place(value, motion_decimals);
+      text += fmt::format("{}\n", fmt::join(row, ","));
     }
   }
   return text;
@@ -210,47 +224,49 @@ nlohmann::ordered_json answer_json(const Answer& answer) {
             {"apart_over_length",
              rounded(short_number(other.apart_m, scene.length) / scene.length, 1)}};
   });
-  result["points_bound_m"] = bound(answer.bounds.points_m, place_rounding);
-  result["arc_length_m"] =
-      json_list(first.shape.arc_length, [](double s) -> Json { return place(s); });
-  Json points = Json::array();
-  for (const auto& point : first.shape.points.colwise()) points.push_back(answer_point(point));
-  result["points_m"] = std::move(points);
+  result["points_bound_m"] = bound_of_points(answer.bounds.points_m, answer_decimals);
+  result["arc_length_m"] = places(first.shape.arc_length, answer_decimals);
+  result["points_m"] = places(first.shape.points, answer_decimals);
   return result;
 }
 
 nlohmann::ordered_json motion_json(const MotionAnswer& answer) {
-  const auto places = [](const std::vector<double>& values) {
-    return json_list(values, [](double value) -> Json { return motion_place(value); });
-  };
-  Json result = {{"schema", motion_schema_name},
-                 {"id", answer.of.id},
-                 {"class", answer.of.group},
-                 {"name", answer.of.scene.name},
-                 {"isolates", answer.of.isolates},
-                 {"length_m", answer.of.scene.length},
-                 {"gamma", rounded(answer.of.scene.gamma(), 1)},
-                 {"methods", {to_string(Model::energy), answer.second_method}},
-                 {"points_bound_m", bound(answer.points_bound_m, motion_place_rounding)},
-                 {"times_s", places(answer.times)},
-                 {"arc_length_m", places(answer.arc_length)}};
-  result["frames_m"] = json_list(answer.frames, [](const Eigen::Matrix3Xd& frame) -> Json {
-    Json points = Json::array();
-    for (const auto& point : frame.colwise()) {
-      points.push_back({motion_place(point.x()), motion_place(point.y()), motion_place(point.z())});
-    }
-    return points;
-  });
-  return result;
+  return {{"schema", motion_schema_name},
+          {"id", answer.of.id},
+          {"class", answer.of.group},
+          {"name", answer.of.scene.name},
+          {"isolates", answer.of.isolates},
+          {"length_m", answer.of.scene.length},
+          {"gamma", rounded(answer.of.scene.gamma(), 1)},
+          {"methods", {to_string(Model::energy), answer.second_method}},
+          {"points_bound_m", bound_of_points(answer.points_bound_m, motion_decimals)},
+          {"times_s", places(answer.times, motion_decimals)},
+          {"arc_length_m", places(answer.arc_length, motion_decimals)},
+          {"frames_m", json_list(answer.frames, [](const Eigen::Matrix3Xd& frame) {
+             return places(frame, motion_decimals);
+           })}};
 }
 
 Pack certified_pack(const std::string& version, const std::vector<BatteryScene>& scenes,
-                    int threads, const SolveOptions& options) {
-  std::vector<BatteryScene> at_rest;
-  std::vector<BatteryScene> moving;
-  for (const BatteryScene& scene : scenes) (scene.motion ? moving : at_rest).push_back(scene);
-  return {version, certified_answers(at_rest, threads, options),
-          certified_motions(moving, threads, options)};
+                    int threads) {
+  Pack pack{version, {}, {}};
+  for (const BatteryScene& scene : scenes) {
+    if (scene.motion) {
+      pack.motions.push_back({.of = scene});
+    } else {
+      pack.answers.push_back({.of = scene});
+    }
+  }
+  tbb::task_arena arena(arena_threads(threads));
+  const auto certify = [&](auto& answers, const auto& certified) {
+    execute(arena, [&] {
+      tbb::parallel_for(std::size_t{0}, answers.size(),
+                        [&](std::size_t i) { answers[i] = certified(answers[i].of); });
+    });
+  };
+  certify(pack.answers, certified_answer);
+  certify(pack.motions, certified_motion);
+  return pack;
 }
 
 void require_own_pack(const std::string& folder, const std::vector<BatteryScene>& scenes) {
@@ -283,25 +299,25 @@ void write_pack(const std::string& folder, const Pack& pack) {
                 {"version", pack.version},
                 {"unit", "SI"},
                 {"answers", Json::array()}};
-  const auto entry = [](const BatteryScene& scene, double points_bound, double rounding) -> Json {
-    return {{"id", scene.id},
-            {"class", scene.group},
-            {"isolates", scene.isolates},
-            {"answer", scene.id + ".json"},
-            {"points", scene.id + ".csv"},
-            {"points_bound_over_length",
-             bound(points_bound / scene.scene.length, rounding / scene.scene.length)}};
+  const auto entry = [](const BatteryScene& scene, double points_bound, int decimals) -> Json {
+    return {
+        {"id", scene.id},
+        {"class", scene.group},
+        {"isolates", scene.isolates},
+        {"answer", scene.id + ".json"},
+        {"points", scene.id + ".csv"},
+        {"points_bound_over_length", bound_of_points(points_bound, decimals, scene.scene.length)}};
   };
   for (const Answer& answer : pack.answers) {
     write_document(path / (answer.of.id + ".json"), answer_json(answer));
     write_file(path / (answer.of.id + ".csv"), answer_csv(answer));
     write_file(path / (answer.of.id + ".vtu"), answer_vtu(answer));
-    index["answers"].push_back(entry(answer.of, answer.bounds.points_m, place_rounding));
+    index["answers"].push_back(entry(answer.of, answer.bounds.points_m, answer_decimals));
   }
   for (const MotionAnswer& answer : pack.motions) {
     write_document(path / (answer.of.id + ".json"), motion_json(answer));
     write_file(path / (answer.of.id + ".csv"), motion_csv(answer));
-    index["answers"].push_back(entry(answer.of, answer.points_bound_m, motion_place_rounding));
+    index["answers"].push_back(entry(answer.of, answer.points_bound_m, motion_decimals));
   }
   write_file(path / "schema.json", answer_schema());
   write_file(path / "motion_schema.json", motion_schema());

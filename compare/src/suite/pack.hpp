@@ -27,8 +27,7 @@ struct Pack {
 /// Computes the answers of scenes of both kinds. @param threads  0: all cores;  @throws as
 /// certified_answer() and certified_motion()
 [[nodiscard]] Pack certified_pack(const std::string& version,
-                                  const std::vector<BatteryScene>& scenes, int threads,
-                                  const SolveOptions& options = {});
+                                  const std::vector<BatteryScene>& scenes, int threads);
 
 /// Checks that a folder contains no file that write_pack() would replace but did not write itself.
 /// @throws InputError that names the file

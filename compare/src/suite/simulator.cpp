@@ -21,24 +21,15 @@
 namespace dlo::compare {
 namespace {
 
-/// One of dlo's own polygon models.
-struct OwnSimulator {
-  const char* name;
-  Model model;
-  BendingLaw law;
-};
-constexpr OwnSimulator own_simulators[] = {
-    {"chain", Model::chain, BendingLaw::hooke},
-    {"force", Model::force, BendingLaw::hooke},
-    {"chain_paper", Model::chain, BendingLaw::paper},
-    {"force_paper", Model::force, BendingLaw::paper},
-};
-
 Simulator parsed_simulator(const std::string& text) {
-  for (const OwnSimulator& own : own_simulators) {
-    if (text == own.name) {
-      return {.name = text, .own = own.model, .law = own.law, .program = {}};
-    }
+  const std::string_view suffix = "_paper";
+  const bool has_paper_law = text.ends_with(suffix);
+  const std::string model = text.substr(0, text.size() - (has_paper_law ? suffix.size() : 0));
+  if (model == "chain" || model == "force") {
+    return {.name = text,
+            .own = from_name<Model>(model),
+            .law = has_paper_law ? BendingLaw::paper : BendingLaw::hooke,
+            .program = {}};
   }
   const ForeignProgram program = parse_foreign_program(text);
   return {.name = program.name, .own = {}, .program = program};
@@ -126,24 +117,6 @@ std::string battery_document(const BatteryScene& scene, int points) {
   return document.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
 }
 
-SimulatorRun run_program(const ForeignProgram& program, const BatteryScene& scene, int points,
-                         double time_limit) {
-  ForeignRun run = scene.motion ? run_foreign_motion(program, battery_document(scene, points),
-                                                     points, time_limit)
-                                : run_foreign(program, scene.scene, points, time_limit);
-  SimulatorRun result;
-  result.problem = run.problem;
-  result.seconds = run.seconds;
-  result.shape = std::move(run.shape);
-  result.motion = std::move(run.motion);
-  if (result.shape || result.motion) {
-    result.status = RunStatus::solved;
-  } else if (run.not_supported) {
-    result.status = RunStatus::not_supported;
-  }
-  return result;
-}
-
 /// Returns name, size and modification time of the files that a command names, such as its script.
 std::string files_of_command(const std::vector<std::string>& words) {
   std::string text;
@@ -156,22 +129,13 @@ std::string files_of_command(const std::vector<std::string>& words) {
   return text;
 }
 
-/// Returns rows of time, arc length and position.
-Json motion_rows(const MarkerMotion& motion) {
-  return json_list(motion.positions, [](const MarkerPosition& at) -> Json {
-    return {at.time, at.arc_length, at.position.x(), at.position.y(), at.position.z()};
-  });
-}
-
-MarkerMotion motion_of_rows(const Json& rows) {
-  MarkerMotion motion{.file = "its shape", .positions = {}};
-  for (const Json& row : rows) {
-    motion.positions.push_back(
-        {row.at(0).get<double>(),
-         row.at(1).get<double>(),
-         {row.at(2).get<double>(), row.at(3).get<double>(), row.at(4).get<double>()}});
+/// Returns rows that parse_markers() reads.
+std::string marker_rows(const MarkerMotion& motion) {
+  std::string text = "time,s,x,y,z\n";
+  for (const MarkerPosition& at : motion.positions) {
+    text += fmt::format("{},{},{}\n", at.time, at.arc_length, fmt::join(at.position, ","));
   }
-  return motion;
+  return text;
 }
 
 std::optional<SimulatorRun> read_run(const std::filesystem::path& file, const std::string& known) {
@@ -186,7 +150,7 @@ std::optional<SimulatorRun> read_run(const std::filesystem::path& file, const st
     run.problem = document.at("problem");
     run.seconds = document.at("wall_s");
     if (document.contains("motion")) {
-      run.motion = motion_of_rows(document["motion"]);
+      run.motion = parse_markers(document["motion"].get<std::string>(), "its shape");
     } else if (run.status == RunStatus::solved)
       run.shape = parse_shape(document.at("shape").dump(), "its shape");
     return run;
@@ -204,7 +168,7 @@ void write_run(const std::filesystem::path& file, const std::string& known,
                    {"status", to_string(run.status)},
                    {"problem", run.problem},
                    {"wall_s", run.seconds}};
-  if (run.motion) document["motion"] = motion_rows(*run.motion);
+  if (run.motion) document["motion"] = marker_rows(*run.motion);
   if (run.shape) {
     document["shape"] = {{"points_m", points_json(run.shape->points)}};
     if (!run.shape->arc_length.empty()) document["shape"]["arc_length_m"] = run.shape->arc_length;
@@ -231,7 +195,9 @@ SimulatorRun run_simulator(const Simulator& simulator, const BatteryScene& scene
     numbered.scene.force_model.law = simulator.law;
     run = run_own(*simulator.own, std::move(numbered), points, time_limit);
   } else {
-    run = run_program(simulator.program, scene, points, time_limit);
+    run = scene.motion ? run_foreign_motion(simulator.program, battery_document(scene, points),
+                                            points, time_limit)
+                       : run_foreign(simulator.program, scene.scene, points, time_limit);
   }
   run.points = points;
   return run;
@@ -266,7 +232,7 @@ SimulatorRun kept_run(const std::string& folder, const std::string& version,
   const std::filesystem::path mine = std::filesystem::path(folder) / simulator.name;
   const std::filesystem::path file = mine / fmt::format("{}_{}.json", scene.id, points);
   const std::string known = fingerprint(fmt::format(
-      "dlo/run/2\n{}\n{}\n{}{}\n{}", version, simulator.identity(),
+      "dlo/run/3\n{}\n{}\n{}{}\n{}", version, simulator.identity(),
       files_of_command(simulator.program.words), time_limit, battery_document(scene, points)));
   if (std::optional<SimulatorRun> run = read_run(file, known)) return std::move(*run);
   SimulatorRun run = run_simulator(simulator, scene, points, time_limit);

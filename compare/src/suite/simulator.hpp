@@ -6,41 +6,11 @@
 #include <vector>
 
 #include "dlo/compare/scene.hpp"
-#include "dlo/compare/shape_file.hpp"
 #include "dlo/compare/solution.hpp"
 #include "foreign/foreign_program.hpp"
 #include "suite/battery.hpp"
-#include "trajectory/read_trajectory.hpp"
 
 namespace dlo::compare {
-
-/// Status of a run.
-enum class RunStatus {
-  solved,         ///< there is a shape or a motion
-  not_supported,  ///< the simulator reports that it does not support the scene
-  failed,         ///< any other outcome
-  not_judged,     ///< the reference of the scene did not converge; the simulator was not run
-};
-
-/// Names of the statuses in files.
-template <>
-struct Choices<RunStatus> {
-  /// All statuses, in the order of the enumeration.
-  static constexpr Choice<RunStatus> all[] = {{RunStatus::solved, "solved", ""},
-                                              {RunStatus::not_supported, "not supported", ""},
-                                              {RunStatus::failed, "failed", ""},
-                                              {RunStatus::not_judged, "not judged", ""}};
-};
-
-/// Shape or motion of a scene with N points, or the reason why there is none.
-struct SimulatorRun {
-  int points = 0;                        ///< N
-  RunStatus status = RunStatus::failed;  ///< how the run ended
-  std::string problem;                   ///< one line; empty if there is a shape or a motion
-  double seconds = 0;                    ///< wall time [s]
-  std::optional<MeasuredShape> shape;    ///< shape of a solved run of a scene at rest
-  std::optional<MarkerMotion> motion;    ///< motion of a solved run of a scene that moves
-};
 
 /// Simulator that is run on the benchmark set: a foreign program, one of dlo's polygon models, or a
 /// function.

@@ -23,7 +23,7 @@ using testing::StartsWith;
 Scene soft_cable() { return load_scene(std::string(DLO_DATA) + "/scenes/cable.toml"); }
 
 /// A line of sh, in which $0 is the scene, $1 N and $2 the shape.
-ForeignRun run_shell(const std::string& line, double time_limit = 20) {
+SimulatorRun run_shell(const std::string& line, double time_limit = 20) {
   return run_foreign({"sh", {"sh", "-c", line, "{scene}", "N={points}", "{shape}"}}, soft_cable(),
                      24, time_limit);
 }
@@ -75,7 +75,7 @@ TEST(ForeignProgram, BadOnesAreRefused) {
 }
 
 TEST_F(ForeignFolder, IsGivenTheSceneAndTheNumberOfPoints) {
-  const ForeignRun run = run_shell(
+  const SimulatorRun run = run_shell(
       "grep -q '\"schema\": \"dlo/scene/1\"' $0 && grep -q '\"points\": 24' $0 && "
       "[ $1 = N=24 ] && printf '0,0,0\\n1,0,0\\n' > $2.csv");
   EXPECT_EQ(run.problem, "");
@@ -85,12 +85,12 @@ TEST_F(ForeignFolder, IsGivenTheSceneAndTheNumberOfPoints) {
 }
 
 TEST_F(ForeignFolder, EndOfTheLastSegmentIsAppendedToTheStartsOfTheSegments) {
-  const ForeignRun run = run_shell("for i in 0 1 2 3 4 5 6 7; do echo 0.${i}00,0,0; done > $2.csv");
+  const auto run = run_shell("for i in 0 1 2 3 4 5 6 7; do echo 0.${i}00,0,0; done > $2.csv");
   ASSERT_TRUE(run.shape) << run.problem;
   EXPECT_EQ(run.shape->points.cols(), 8);
   Scene rod = soft_cable();
   rod.length = 0.8;
-  const ForeignRun starts = run_foreign(
+  const SimulatorRun starts = run_foreign(
       {"sh", {"sh", "-c", "for i in 0 1 2 3 4 5 6 7; do echo 0.$i,0,0; done > $0.csv", "{shape}"}},
       rod, 8, 20);
   ASSERT_TRUE(starts.shape) << starts.problem;
@@ -143,7 +143,7 @@ TEST_F(ForeignFolder, GoesWithAllThatIsInItHoweverDeep) {
 
 TEST_F(ForeignFolder, IsKilledAtTheTimeLimitWithAllThatItStartedAndLeftRunning) {
   const std::string mark = std::filesystem::temp_directory_path().string() + "_alive";
-  const ForeignRun run = run_shell("trap '' TERM; (sleep 1; touch " + mark + ") & sleep 60", 0.2);
+  const SimulatorRun run = run_shell("trap '' TERM; (sleep 1; touch " + mark + ") & sleep 60", 0.2);
   EXPECT_TRUE(run.too_long);
   EXPECT_EQ(run.problem, "killed after the time limit of 0.2 s");
   EXPECT_LT(run.seconds, 10);
