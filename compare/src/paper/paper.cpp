@@ -71,17 +71,17 @@ std::vector<ModulusVariant> variants(const Scene& scene) {
 /// and fits E*/E after 1, 2, 5, ... 200 s of simulated time. c_F is the scene's or Table 1's 0.86
 /// L/(2 c_c), so simulated times are comparable only for equal c_c.
 /// @param rest  rest shape of the force model with the same c_c
+/// @param[out] c_F  of the steps [m/N]
 /// @throws InputError, ConvergenceError, also if the steps diverge
-ModulusHistory modulus_history(const Scene& scene, const Shape& rest) {
+std::vector<ModulusAtTime> modulus_history(const Scene& scene, const Shape& rest, double& c_F) {
   ForceModelSettings settings = scene.force_model;
   settings.stepper = Stepper::basic;
   const Discretisation discretisation = discretise(scene, settings);
   const force_model::StepOptions options = step_options(settings, discretisation);
   force_model::Simulation simulation(discretisation.rod, discretisation.starts.front(), options);
   const energy_model::Equilibrium energy = solve_reference(scene, Model::energy);
-  ModulusHistory history;
-  history.c_c = discretisation.parameters.c_c;
-  history.c_F = options.c_F;
+  std::vector<ModulusAtTime> history;
+  c_F = options.c_F;
   for (const double time : history_times) {
     const auto target = static_cast<long>(time * paper_steps_per_second);
     while (simulation.steps() < target) {
@@ -97,20 +97,20 @@ ModulusHistory modulus_history(const Scene& scene, const Shape& rest) {
     at.modulus = fit_effective_modulus(scene, distance_from(shape), energy);
     at.rms_over_length = distance(shape, energy.sample) / scene.length;
     at.rest_distance_over_length = rms(shape.arc_length, shape.points - rest.points) / scene.length;
-    history.times.push_back(at);
+    history.push_back(at);
   }
   return history;
 }
 
 }  // namespace
 
-double time_at_ratio(const std::vector<ModulusAtTime>& times, double ratio) {
-  for (std::size_t i = 0; i + 1 < times.size(); ++i) {
-    const double before = times[i].modulus.ratio / ratio;
-    const double after = times[i + 1].modulus.ratio / ratio;
+double PaperCase::time_at_one_third() const {
+  for (std::size_t i = 0; i + 1 < creep.size(); ++i) {
+    const double before = 3 * creep[i].modulus.ratio;
+    const double after = 3 * creep[i + 1].modulus.ratio;
     if (before >= 1 && after < 1) {
       const double share = std::log(before) / std::log(before / after);
-      return times[i].time_s * std::pow(times[i + 1].time_s / times[i].time_s, share);
+      return creep[i].time_s * std::pow(creep[i + 1].time_s / creep[i].time_s, share);
     }
   }
   return NAN;
@@ -132,9 +132,7 @@ PaperReport paper_report(const Stages& progress) {
       PaperCase entry;
       entry.weight = weight;
       entry.rest = compare(scene, {}, PlanOptions{});
-      const ModulusHistory history = modulus_history(scene, entry.rest.force.shape);
-      entry.creep = history.times;
-      report.c_F = history.c_F;
+      entry.creep = modulus_history(scene, entry.rest.force.shape, report.c_F);
       report.cases.push_back(std::move(entry));
     }
   }

@@ -28,26 +28,15 @@ struct ModulusAtTime {
   double rest_distance_over_length = 0;
 };
 
-/// E*/E over time while the force model creeps to rest.
-struct ModulusHistory {
-  double c_c = 0;                    ///< [N]
-  double c_F = 0;                    ///< [m/N]
-  std::vector<ModulusAtTime> times;  ///< samples in the order of time
-};
-
-/// Returns the simulated time at which E*/E decreases below a ratio, interpolated between the
-/// samples by a power law; NaN if it does not [s].
-[[nodiscard]] double time_at_ratio(const std::vector<ModulusAtTime>& times, double ratio);
-
 /// One orientation of Figs. 12 and 13, with one choice of the weight of the points.
 struct PaperCase {
   Comparison rest;                   ///< comparison at rest, with the paper's c_c
   std::vector<ModulusAtTime> creep;  ///< samples before the rod is at rest, in the order of time
   PaperWeight weight = PaperWeight::of_the_rod;  ///< weight of every point
 
-  /// Returns the simulated time at which E*/E decreases below the paper's 1/3, see time_at_ratio
-  /// [s].
-  [[nodiscard]] double time_at_one_third() const { return time_at_ratio(creep, 1. / 3); }
+  /// Returns the simulated time at which E*/E decreases below the paper's 1/3, interpolated between
+  /// the samples by a power law; NaN if it does not [s].
+  [[nodiscard]] double time_at_one_third() const;
 };
 
 /// E*/E at rest for another load, number of points, law, stiffness rule or convention.

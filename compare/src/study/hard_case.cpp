@@ -11,7 +11,6 @@
 
 #include "dlo/compare/error.hpp"
 #include "dlo/compare/force_model_settings.hpp"
-#include "dlo/energy_model/polygon.hpp"
 #include "polygon/energy_problems.hpp"
 #include "polygon/point_layout.hpp"
 
@@ -46,15 +45,10 @@ double soft_stretch_stiffness(const Scene& scene) {
   return std::max(scene.axial_stiffness() / 1000, 1000 * load);
 }
 
-enum class CaseStretch {
-  soft,      // the rule of hard_cases()
-  physical,  // c_c = AE
-};
-
-ForceModelSettings settings_for(const Scene& scene, int points, CaseStretch stretch) {
+ForceModelSettings settings_for(const Scene& scene, int points = 16) {
   ForceModelSettings settings;
   settings.points = points;
-  if (stretch == CaseStretch::soft) settings.c_c = soft_stretch_stiffness(scene);
+  settings.c_c = soft_stretch_stiffness(scene);
   return settings;
 }
 
@@ -71,19 +65,12 @@ HardCase make(std::string name, std::string what, const Scene& scene,
   return result;
 }
 
-HardCase make(std::string name, std::string what, const Scene& scene, int points = 16,
-              CaseStretch stretch = CaseStretch::soft) {
-  return make(std::move(name), std::move(what), scene, settings_for(scene, points, stretch));
+HardCase make(std::string name, std::string what, const Scene& scene, int points = 16) {
+  return make(std::move(name), std::move(what), scene, settings_for(scene, points));
 }
 
 Eigen::Matrix3Xd rest_shape(const HardCase& hard) {
-  const energy_model::PolygonResult result =
-      energy_model::solve_polygon(polygon_problem(hard.rod(0)), hard.discretisation.starts.front());
-  if (!energy_model::succeeded(result.status)) {
-    throw ConvergenceError(
-        fmt::format("hard case '{}': no rest shape to start from: {}", hard.name, result.message));
-  }
-  return result.points;
+  return polygon_at_rest(hard.name, hard.rod(0), hard.discretisation.starts.front()).points;
 }
 
 /// Places the free points on a circular arc that rotates the tangent by `angle` in all [rad].
@@ -161,7 +148,7 @@ HardCase papers_rod() {
   constexpr double orientation = -175 * pi / 180;
   Scene scene = steel_rod(1, {std::cos(orientation), std::sin(orientation), 0});
   scene.gravity = {0, -9.81, 0};
-  ForceModelSettings settings = settings_for(scene, 16, CaseStretch::soft);
+  ForceModelSettings settings = settings_for(scene);
   settings.law = BendingLaw::paper;
   settings.bookkeeping = Bookkeeping::paper;
   return make("the paper's rod", "Table 5 at -175 deg, law and bookkeeping paper", scene, settings);
@@ -170,7 +157,7 @@ HardCase papers_rod() {
 std::vector<HardCase> hard_rods() {
   std::vector<HardCase> cases;
   cases.push_back(make("c_c = AE", "physical stretch stiffness: the stiffest segments for the rod",
-                       horizontal(2), 16, CaseStretch::physical));
+                       horizontal(2), ForceModelSettings{.points = 16}));
   cases.push_back(
       make("Gamma = 1e-6", "next to no load; starts bent to half a circle", horizontal(1e-6)));
   cases.back().start = arc(cases.back(), pi);
@@ -246,7 +233,7 @@ std::vector<HardCase> torn_rods() {
   refused.what = "two grippers 20 % further apart than the rod is long: no such rod";
   scene.grippers.back().position.x() = apart;
   try {
-    (void)discretise(scene, settings_for(scene, 16, CaseStretch::soft));
+    (void)discretise(scene, settings_for(scene));
   } catch (const InputError& error) {
     refused.refusal = error.what();
   }
@@ -267,6 +254,16 @@ force_model::Rod HardCase::rod(double share) const {
   force_model::Grip& grip = result.grips.front();
   grip.targets = moved(discretisation.rod.grips.front().targets, share);
   grip.reference += share * motion.movement;
+  return result;
+}
+
+energy_model::PolygonResult polygon_at_rest(const std::string& name, const force_model::Rod& rod,
+                                            const Eigen::Matrix3Xd& start) {
+  energy_model::PolygonResult result = energy_model::solve_polygon(polygon_problem(rod), start);
+  if (!energy_model::succeeded(result.status)) {
+    throw ConvergenceError(
+        fmt::format("{}: the chain model has no rest shape: {}", name, result.message));
+  }
   return result;
 }
 

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "dlo/compare/discretise.hpp"
+#include "dlo/energy_model/polygon.hpp"
 
 namespace dlo::compare {
 
@@ -35,6 +36,13 @@ struct HardCase {
   /// Returns the rod after that fraction of the motion.
   [[nodiscard]] force_model::Rod rod(double share) const;
 };
+
+/// Returns the equilibrium of a polygon that solve_polygon finds from a start.
+/// @param name  of the rod, for the message;  @param start  [m], 3 x N
+/// @throws ConvergenceError if it finds none
+[[nodiscard]] energy_model::PolygonResult polygon_at_rest(const std::string& name,
+                                                          const force_model::Rod& rod,
+                                                          const Eigen::Matrix3Xd& start);
 
 /// Returns the scene of the rod that hard_cases() describes.
 [[nodiscard]] Scene hard_case_scene();

@@ -11,11 +11,11 @@
 
 #include "base/progress_counter.hpp"
 #include "dlo/compare/error.hpp"
-#include "dlo/energy_model/polygon.hpp"
 #include "dlo/force_model/simulation.hpp"
 #include "parallel/threads.hpp"
 #include "polygon/energy_problems.hpp"
 #include "polygon/point_layout.hpp"
+#include "shape/curve.hpp"
 
 namespace dlo::compare {
 namespace {
@@ -74,14 +74,7 @@ SimulationEnd stay_at_rest(force_model::Simulation& simulation, long steps) {
 }
 
 energy_model::PolygonResult reference_of(const HardCase& hard) {
-  const energy_model::PolygonProblem problem = polygon_problem(hard.rod(1));
-  energy_model::PolygonResult result =
-      energy_model::solve_polygon(problem, hard.moved(hard.discretisation.starts.front(), 1));
-  if (!energy_model::succeeded(result.status)) {
-    throw ConvergenceError(fmt::format("hard case '{}': the chain model has no rest shape: {}",
-                                       hard.name, result.message));
-  }
-  return result;
+  return polygon_at_rest(hard.name, hard.rod(1), hard.moved(hard.discretisation.starts.front(), 1));
 }
 
 /// Changes the result to a pass, with a note, if the final shape is a stable equilibrium other than
@@ -89,12 +82,8 @@ energy_model::PolygonResult reference_of(const HardCase& hard) {
 void try_other_equilibrium(const force_model::Rod& rod, const SimulationEnd& trajectory,
                            double reference_energy, double tolerance, StabilityResult& result) {
   const Eigen::Matrix3Xd& end = trajectory.late.back();
-  const double shortest = (end.rightCols(end.cols() - 1) - end.leftCols(end.cols() - 1))
-                              .colwise()
-                              .squaredNorm()
-                              .minCoeff();
   // solve_polygon needs an initial guess without segments of zero length.
-  if (!(shortest > 0)) return;
+  if (!(chord_lengths(end).minCoeff() > 0)) return;
   const energy_model::PolygonResult other = energy_model::solve_polygon(polygon_problem(rod), end);
   if (!energy_model::succeeded(other.status)) return;
   if (classify(trajectory, other.points, rod.length(), tolerance) != Outcome::pass) return;

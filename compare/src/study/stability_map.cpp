@@ -17,7 +17,6 @@
 #include "dlo/force_model/batch.hpp"
 #include "dlo/force_model/simulation.hpp"
 #include "parallel/threads.hpp"
-#include "polygon/energy_problems.hpp"
 #include "polygon/point_layout.hpp"
 
 namespace dlo::compare {
@@ -45,17 +44,13 @@ double geometric(double first, double last, int index, int count) {
 /// Returns the force model's own rest shape. With unequal segments the paper's law has a rest shape
 /// that differs from the chain's minimum.
 Eigen::Matrix3Xd rest_points(const Scene& scene, const Discretisation& discretisation) {
-  const energy_model::PolygonResult chain = energy_model::solve_polygon(
-      polygon_problem(discretisation.rod), discretisation.starts.front());
-  if (!energy_model::succeeded(chain.status)) {
-    throw ConvergenceError(fmt::format("{}: no rest shape for the map, c_c = {:.4g} N: {}",
-                                       scene.file, discretisation.rod.c_c, chain.message));
-  }
+  const std::string name = fmt::format("{}, c_c = {:.4g} N", scene.file, discretisation.rod.c_c);
+  const energy_model::PolygonResult chain =
+      polygon_at_rest(name, discretisation.rod, discretisation.starts.front());
   force_model::Simulation simulation(discretisation.rod, chain.points, {});
   const force_model::RelaxResult rest = simulation.relax({.tolerance = 1e-9});
   if (rest.status != force_model::RelaxStatus::at_rest) {
-    throw ConvergenceError(fmt::format("{}: no rest shape for the map, c_c = {:.4g} N: {}",
-                                       scene.file, discretisation.rod.c_c, rest.message));
+    throw ConvergenceError(fmt::format("{}: no rest shape for the map: {}", name, rest.message));
   }
   return simulation.points();
 }
