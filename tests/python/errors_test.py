@@ -235,6 +235,7 @@ def test_arguments_of_a_wrong_kind_are_named(cable):
         (lambda: loop.move_gripper(-1, (0, 0, 0)), r"gripper = -1: out of range \(allowed: an integer f"),
         (lambda: batch.move_gripper(0.5, 0, (0, 0, 0)), r"rod = 0.5: a float \(allowed: an integer f"),
         (lambda: cable.replace(force_model={1: 2}), r"force_model: a key = 1: a int \(allowed: text"),
+        (lambda: dlo.solve(cable).plot("x.svg"), r"ax = 'x.svg': a str \(allowed: axes of matplotlib, or None; plot"),
         (lambda: dlo.Scene.from_text(b""), r"text = b'': a bytes \(allowed: text"),
         (lambda: dlo.Scene.from_file("\ud800"), r"scene: a file's name with half a character"),
     ]:

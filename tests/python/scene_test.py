@@ -250,7 +250,7 @@ def test_values_that_no_file_has_name_their_key(cable):
         (lambda s: setattr(s.force_model, "pionts", 9), r"ForceModelSettings has no pionts, did you mean poin"),
         (lambda s: setattr(s.track, "frame_rat", 9), r"TrackRates has no frame_rat, did you mean frame_rate\?"),
         (lambda s: setattr(s, "copy", 3), r"a dlo.Scene has no copy"),
-        (lambda s: setattr(s, "gamma", 3), r"gamma"),
+        (lambda s: setattr(s, "gamma", 3), r"gamma of a dlo.Scene is derived"),
     ],
 )
 def test_what_nobody_reads_cannot_be_set(steel, write, words):
@@ -301,6 +301,16 @@ def test_every_key_of_a_scene_file_has_a_field(steel):
         assert fields == {python.get(key, key) for key in dlo._dlo.scene_keys[kind._name]}
     for key in dlo._dlo.scene_keys["rod"]:
         assert isinstance(getattr(dlo.Scene, key), property)
+
+
+def test_a_key_that_is_not_given_has_its_default_or_none(steel):
+    settings, gripper = steel.force_model, steel.grippers[0]
+    assert (settings.points, settings.law, settings.joint_law, settings.c_c) == (16, "hooke", None, None)
+    assert (steel.track.frame_rate, steel.track.start) == (1000, None)
+    assert (gripper.hold, gripper.turns, gripper.roll, gripper.pose) == ("clamp", 0, None, None)
+    assert dlo.load(at=0, mass=1).follows is False and dlo.distributed_load((0, 1, 0)).start == 0
+    assert (steel.layer_bound, steel.natural_curvature, steel.torsional_stiffness) == ("bonded", None, None)
+    assert dlo.clamp(0, (0, 0, 0), trajectory="path.csv").trajectory == "path.csv"
 
 
 def test_loads_are_read_and_set_in_si_units(steel):

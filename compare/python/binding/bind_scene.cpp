@@ -4,7 +4,6 @@
 #include <pybind11/stl.h>
 
 #include <limits>
-#include <map>
 #include <sstream>
 
 #include "array.hpp"
@@ -51,49 +50,6 @@ std::string toml_text(const py::dict& document) {
   return text.str();
 }
 
-/// Returns a quantity in SI units. @param unit  SI unit of its dimension; empty: a number
-double quantity(const std::string& text, const std::string& unit) {
-  using compare::Dimension;
-  static const auto dimensions = [] {
-    std::map<std::string, Dimension> of_units = {{"", Dimension::number}};
-    for (int i = 1; i <= static_cast<int>(Dimension::frequency); ++i) {
-      const auto dimension = static_cast<Dimension>(i);
-      of_units[compare::unit_names(dimension).front()] = dimension;
-    }
-    return of_units;
-  }();
-  return compare::parse_quantity(text, dimensions.at(unit));
-}
-
-py::dict settings_of(const SceneData& data) {
-  const compare::ForceModelSettings& settings = data.scene.force_model;
-  py::dict result;
-  result["points"] = settings.points;
-  result["law"] = compare::to_string(settings.law);
-  result["joint_law"] = settings.joint_law
-                            ? py::object(py::str(compare::to_string(*settings.joint_law)))
-                            : py::none();
-  result["bookkeeping"] = compare::to_string(settings.bookkeeping);
-  result["stepper"] = compare::to_string(settings.stepper);
-  result["bending_rule"] = compare::to_string(settings.bending_rule);
-  result["design_curvature"] = settings.design_curvature;
-  result["point_weight"] = settings.point_weight;
-  result["c_b"] = settings.c_b;
-  result["c_c"] = settings.c_c;
-  result["c_F"] = settings.c_F;
-  result["c_h"] = settings.c_h;
-  result["l_s"] = settings.l_s;
-  return result;
-}
-
-py::dict rates_of(const SceneData& data) {
-  const compare::TrackRates& rates = data.scene.track;
-  std::optional<std::string> start;
-  if (data.scene.start) start = data.scene.start->file;
-  return py::dict("frame_rate"_a = rates.frames, "obstacle_rate"_a = rates.obstacles,
-                  "step_rate"_a = rates.steps, "start"_a = start);
-}
-
 SharedScene scene_at(const SharedScene& data, double time) {
   if (!compare::motion_of(data->scene)) {
     throw compare::InputError(
@@ -113,12 +69,22 @@ SharedScene calibrated_scene(const SharedScene& data, const std::string& text,
       SceneData{std::move(scene), data->obstacle_offsets, std::move(rod)});
 }
 
+/// Returns the rows of scene_tables() by table and key: form and dimension, SI unit, allowed
+/// values, default, words.
 py::dict table_keys() {
-  py::dict keys;
+  py::dict tables;
   for (const compare::SceneTable& table : compare::scene_tables()) {
-    keys[py::str(table.name)] = py::cast(table.names);
+    py::dict keys;
+    for (const compare::SceneKey& key : table.keys) {
+      const std::vector<std::string> units = compare::unit_names(key.dimension);
+      const std::string inner = (table.name.empty() ? "" : table.name + ".") + key.name;
+      keys[py::str(key.name)] =
+          py::make_tuple(key.value, units.empty() ? "" : units.front(), key.range.text, key.missing,
+                         key.words.empty() ? compare::scene_table(inner).words : key.words);
+    }
+    tables[py::str(table.name)] = keys;
   }
-  return keys;
+  return tables;
 }
 
 py::list material_list(const MaterialsFile& file) {
@@ -165,9 +131,11 @@ void bind_scene(py::module_& module) {
       module, "SceneData", "A scene as the reader has it, in SI units.");
   refuse_pickle(bound, "pickled or copied", "the dlo.Scene");
   refuse_new(bound, "dlo.Scene");
-  const auto add = [&bound](const char* name, auto get) {
-    bound.def_property_readonly(name, [get](const SceneData& data) { return get(data.scene); });
+  const auto add = [&bound](const char* name, auto get, const char* words = "") {
+    bound.def_property_readonly(
+        name, [get](const SceneData& data) { return get(data.scene); }, words);
   };
+  // Values of keys as the reader has them; Python has the words of their rows.
   add("name", [](const Scene& s) { return s.name; });
   add("gravity", [](const Scene& s) { return vector_copy(s.gravity); });
   add("length", [](const Scene& s) { return s.length; });
@@ -175,22 +143,35 @@ void bind_scene(py::module_& module) {
   add("inner_diameter", [](const Scene& s) { return s.inner_diameter; });
   add("width", [](const Scene& s) { return s.width; });
   add("thickness", [](const Scene& s) { return s.thickness; });
-  add("youngs_modulus", [](const Scene& s) { return s.material.youngs_modulus; });
-  add("density", [](const Scene& s) { return s.material.density; });
   add("bending_stiffness", [](const Scene& s) { return s.bending_stiffness(); });
   add("axial_stiffness", [](const Scene& s) { return s.axial_stiffness(); });
   add("mass_per_length", [](const Scene& s) { return s.mass_per_length(); });
-  add("mass", [](const Scene& s) { return s.mass(); });
-  add("gamma", [](const Scene& s) { return s.gamma(); });
-  add("planar", [](const Scene& s) { return s.planar(); });
-  add("rest_shape_error", [](const Scene& s) {
-    return s.rest_shape ? s.rest_shape->largest_error : std::numeric_limits<double>::quiet_NaN();
-  });
-  add("rest_shape_angle", [](const Scene& s) {
-    return (s.rest_shape ? s.rest_shape->largest_angle : std::nullopt)
-        .value_or(std::numeric_limits<double>::quiet_NaN());
-  });
-  bound.def_property_readonly("force_model", settings_of).def_property_readonly("track", rates_of);
+  // Derived values.
+  add(
+      "youngs_modulus", [](const Scene& s) { return s.material.youngs_modulus; },
+      "E of the material [Pa]; 0: not known.");
+  add(
+      "density", [](const Scene& s) { return s.material.density; },
+      "Density of the material [kg/m^3]; 0: not known.");
+  add(
+      "mass", [](const Scene& s) { return s.mass(); }, "Mass of the rod, with sections [kg].");
+  add(
+      "gamma", [](const Scene& s) { return s.gamma(); },
+      "w l^3 / (EI) [-]: below 0.1 nearly straight, from 1000 on a rope.");
+  add(
+      "planar", [](const Scene& s) { return s.planar(); },
+      "Whether the rod stays in a plane that contains grips, forces and obstacles in reach.");
+  static constexpr double none = std::numeric_limits<double>::quiet_NaN();
+  add(
+      "rest_shape_error",
+      [](const Scene& s) { return s.rest_shape ? s.rest_shape->largest_error : none; },
+      "Largest distance of rest_shape's points from the arcs [m]; NaN without.");
+  add(
+      "rest_shape_angle",
+      [](const Scene& s) {
+        return s.rest_shape ? s.rest_shape->largest_angle.value_or(none) : none;
+      },
+      "Largest angle of a given d1 from that of the arcs [rad]; NaN without.");
   module.attr("scene_keys") = table_keys();
   module.def("did_you_mean", &compare::did_you_mean);
   module.def("read_scene",
@@ -207,7 +188,11 @@ void bind_scene(py::module_& module) {
   module.def("calibrated_scene", &calibrated_scene);
   module.def("read_file", &compare::read_file);
   module.def("toml_text", &toml_text);
-  module.def("quantity", &quantity);
+  // The value of a text with a unit, in SI units. A form of several numbers has no dimension.
+  module.def("quantity", [](const std::string& text, const std::string& dimension) {
+    const auto named = compare::dimension_named(dimension);
+    return compare::parse_quantity(text, named.value_or(compare::Dimension::number));
+  });
   module.def("materials", &material_list);
 }
 

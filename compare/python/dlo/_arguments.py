@@ -139,15 +139,22 @@ class Attribute(property, Generic[Value]):
 class Strict:
     """Base of classes whose objects have only the attributes of their class."""
 
+    if TYPE_CHECKING:  # attributes for the keys of a scene file are made when the module is imported
+
+        def __getattr__(self, name: str) -> Any: ...
+
     def _no_field(self, name: str) -> str:
         fields = [key for key in dir(type(self)) if isinstance(getattr(type(self), key), property)]
         near = _dlo.did_you_mean(name, fields)
         return f"a dlo.{type(self).__name__} has no {name}{near} (allowed: {', '.join(fields)})"
 
     def __setattr__(self, name: str, value: Any) -> None:
-        known = getattr(type(self), name, None)
-        if name[0] != "_" and (known is None or callable(known)):
-            raise AttributeError(self._no_field(name))
+        if name[0] != "_":
+            known = getattr(type(self), name, None)
+            if known is None or callable(known):
+                raise AttributeError(self._no_field(name))
+            if isinstance(known, property) and known.fset is None:
+                raise AttributeError(f"{name} of a dlo.{type(self).__name__} is derived (allowed: to read it)")
         object.__setattr__(self, name, value)
 
 

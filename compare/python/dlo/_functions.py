@@ -184,8 +184,8 @@ def plan(
 
 
 _CALIBRATED_QUANTITIES = {
-    "clamp_angles": "rad", "clamp_positions": "m", "clamp_rolls": "rad", "clamp_scatter": "rad", "camera_tilt": "rad",
-    "noise": "m",
+    "clamp_angles": "angle", "clamp_positions": "length", "clamp_rolls": "angle", "clamp_scatter": "angle",
+    "camera_tilt": "angle", "noise": "length",
 }
 
 
@@ -234,6 +234,6 @@ def calibrate(
     if shapes is None:
         held_out = [data_of(cast(SceneLike, scene), materials, time, calibrated) for scene in holdout]
         return ForceModelFit(*_dlo.calibrate_force_model(data, held_out, points, target, limits))
-    what.update((key, number_of(what[key], unit)) for key, unit in _CALIBRATED_QUANTITIES.items())
+    what.update((key, number_of(what[key], dimension)) for key, dimension in _CALIBRATED_QUANTITIES.items())
     what["holdout"] = list(map(_pair, holdout))
     return MaterialFit(*_dlo.calibrate_material(data, list(map(_pair, _shapes(shapes))), what, limits))

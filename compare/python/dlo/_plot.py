@@ -5,6 +5,8 @@ from __future__ import annotations
 import io
 from typing import Any, Optional
 
+from ._errors import InputError
+
 # In the order of the library's Dashes and Mark.
 _DASHES = ("-", "--", ":", "-.", (0, (6, 2, 1, 2, 1, 2)))
 _MARKS = ("", "x", "s", "s", "o", "o", "^", "v", "D")
@@ -57,6 +59,9 @@ def _draw(ax: Any, panel: dict[str, Any]) -> None:
 
 def plot(result: Any, ax: Any = None) -> Any:
     """Draws a result with a shape at equal aspect: in its plane if it has one, else in space."""
+    if ax is not None and not hasattr(ax, "get_figure"):
+        allowed = 'axes of matplotlib, or None; plot().figure.savefig("FILE.svg") writes a file'
+        raise InputError(f"ax = {ax!r}: a {type(ax).__name__} (allowed: {allowed})")
     panel = result._panel(None if ax is None else ax.name == "3d")
     if ax is None:
         import matplotlib.pyplot

@@ -2,16 +2,18 @@
 
 from __future__ import annotations
 
+import inspect
 import json
-from typing import Any, Iterable, Optional, Sequence, Union
+import operator
+from typing import Any, Iterable, Optional, Union
 
 from . import _dlo
-from ._arguments import LIST, TABLE, TEXT, Attribute, Strict, require
+from ._arguments import LIST, TABLE, TEXT, Strict, require
 from ._documents import MaterialFit, MotionFit
 from ._errors import InputError
 from ._files import FileName, Materials, file_name, file_text, materials_file
-from ._parts import DistributedLoad, Field, ForceModelSettings, Gripper, Load, Medium, Obstacle, Part, Quantity
-from ._parts import Section, Settings, TrackRates, Vector, copied, given, quantity
+from ._parts import DistributedLoad, ForceModelSettings, Gripper, Load, Medium, Obstacle, Part, Quantity
+from ._parts import Section, TrackRates, field, store
 
 __all__ = ["Scene", "materials"]
 
@@ -22,22 +24,12 @@ Calibrated = Union[MaterialFit, MotionFit, FileName]
 """Result of calibrate() for a rod and its fixture, or the name of its file."""
 
 
-_ROD_KEYS = tuple(_dlo.scene_keys["rod"])
-_TOP_KEYS = ("name", "gravity")
 _PARTS: dict[str, type[Part]] = {
-    "grippers": Gripper, "loads": Load, "distributed_loads": DistributedLoad, "obstacles": Obstacle, "sections": Section
+    kind._name + "s": kind for kind in (Gripper, Load, DistributedLoad, Obstacle, Section)
 }
-_SETTINGS: dict[str, type[Settings]] = {"force_model": ForceModelSettings, "medium": Medium, "track": TrackRates}
-
-
-def _from_reader(doc: str, derived: bool = False) -> Any:
-    """Returns a field whose value the reader gives in SI units."""
-    return Field(lambda scene, key: getattr(scene._data, key), doc, derived=derived)
-
-
-def _own(doc: str) -> Any:
-    """Returns a field that holds the parts or settings that belong to the scene."""
-    return Field(lambda scene, key: scene._parts[key], doc)
+_SETTINGS: dict[str, type[Part]] = {kind._name: kind for kind in (ForceModelSettings, Medium, TrackRates)}
+_ROD = _dlo.scene_keys["rod"]
+_TOP = {key: row for key, row in _dlo.scene_keys[""].items() if not row[0].startswith("table")}
 
 
 class Scene(Strict):
@@ -57,31 +49,17 @@ class Scene(Strict):
     medium, track: a dict, or ForceModelSettings, Medium and TrackRates. materials: a file in which names of materials
     are looked up instead of the built-in one.
 
-    Every field can be read (in SI units) and, unless it is derived, set (None: as if it had not been given). The reader
-    of scene files checks the value: if it is out of range, InputError names the key, and the scene is unchanged.
-    replace() returns a scene with several fields changed at once, for fields that are valid only together.
+    Fields are the keys of the file and of its table [rod]. Every field can be read (in SI units; 0 for a dimension or
+    a property of the material that the scene does not have, None for any other key that is not given) and, unless it is
+    derived, set (None: as if it had not been given). The reader of scene files checks the value: if it is out of range,
+    InputError names the key, and the scene is unchanged. replace() returns a scene with several fields changed at once,
+    for fields that are valid only together.
     """
 
     def __init__(
-        self, length: Quantity, *, diameter: Optional[Quantity] = None, inner_diameter: Optional[Quantity] = None,
-        width: Optional[Quantity] = None, thickness: Optional[Quantity] = None,
-        material: Optional[Union[str, dict[str, Any]]] = None,
-        grippers: Iterable[Gripper] = (), loads: Iterable[Load] = (), distributed_loads: Iterable[DistributedLoad] = (),
-        obstacles: Iterable[Obstacle] = (), sections: Iterable[Section] = (),
-        gravity: Optional[Vector] = None, name: Optional[str] = None,
-        bending_stiffness: Optional[Union[Quantity, Sequence[Quantity]]] = None,
-        mass_per_length: Optional[Quantity] = None, axial_stiffness: Optional[Quantity] = None,
-        stretch: Optional[Union[bool, str]] = None, torsional_stiffness: Optional[Quantity] = None,
-        natural_curvature: Optional[Any] = None, natural_twist: Optional[Quantity] = None,
-        layers: Optional[Sequence[dict[str, Any]]] = None, layer_bound: Optional[str] = None,
-        helix: Optional[dict[str, Quantity]] = None, rest_shape: Optional[Union[str, Any]] = None,
-        joint_stiffness: Optional[Quantity] = None, joint_spacing: Optional[Quantity] = None,
-        force_model: Optional[Union[dict[str, Any], ForceModelSettings]] = None,
-        medium: Optional[Union[dict[str, Any], Medium]] = None,
-        track: Optional[Union[dict[str, Any], TrackRates]] = None, materials: Optional[FileName] = None,
+        self, length: Quantity, *, grippers: Iterable[Gripper] = (), materials: Optional[FileName] = None, **fields: Any
     ) -> None:
-        fields = dict(locals(), name="scene" if name is None else name)
-        del fields["self"], fields["materials"]
+        fields = {"name": "scene", "length": length, "grippers": grippers, **fields}
         self._start("scene", materials_file(materials), fields)
 
     def _start(
@@ -90,8 +68,8 @@ class Scene(Strict):
         self._file, self._materials = file, materials
         self._top: dict[str, Any] = {}
         self._table: dict[str, Any] = {}
-        self._parts: dict[str, Any] = {}
-        for key, value in {**dict.fromkeys((*_PARTS, *_SETTINGS)), **fields}.items():
+        self._parts: dict[str, Any] = dict.fromkeys(_PARTS, ())
+        for key, value in {**dict.fromkeys(_SETTINGS), **fields}.items():
             self._put(key, value)
         if data is None:
             self._read_anew()
@@ -99,20 +77,12 @@ class Scene(Strict):
             self._data = data
 
     def _adopted(self, key: str, kind: type[Part], part: Any) -> Part:
+        """Returns a copy of the part that belongs to this scene. Values of keys never change, so that they are shared."""
         if not isinstance(part, kind):
             raise InputError(f"{key}: a {type(part).__name__} (allowed: {kind.__name__})", key)
-        mine = kind(**part._table)
-        mine._owner = self
+        mine = kind.__new__(kind)
+        vars(mine).update(_owner=self, _table=dict(part._table))
         return mine
-
-    def _settings_of(self, key: str, value: Any) -> Part:
-        kind = _SETTINGS[key]
-        if not isinstance(value, kind):
-            require(key, {} if value is None else value, TABLE)
-            for one in value or ():
-                require(f"{key}: a key", one, TEXT)
-            value = kind(**(value or {}))
-        return self._adopted(key, kind, value)
 
     def _document(self) -> dict[str, Any]:
         document: dict[str, Any] = {**self._top, "rod": self._table}
@@ -138,21 +108,15 @@ class Scene(Strict):
             raise
 
     @classmethod
-    def _from_document(
-        cls, document: dict[str, Any], file: str, materials: Materials, data: Optional[_dlo.SceneData] = None
-    ) -> "Scene":
-        fields: dict[str, Any] = {key: document[key] for key in (*_TOP_KEYS, *_SETTINGS) if key in document}
-        fields.update(document.get("rod", {}))
-        for key, kind in _PARTS.items():
-            fields[key] = [kind(**table) for table in document.get(kind._name, [])]
-        scene = cls.__new__(cls)
-        scene._start(file, materials, fields, data)
-        return scene
-
-    @classmethod
     def _read(cls, text: str, name: str, materials: Materials) -> "Scene":
         data, document = _dlo.parse_scene(text, name, materials)
-        return cls._from_document(document, name, materials, data)
+        fields = document.pop("rod", {})
+        for key, value in document.items():
+            kind = _PARTS.get(key + "s")
+            fields[key + "s" if kind else key] = [kind(**table) for table in value] if kind else value
+        scene = cls.__new__(cls)
+        scene._start(name, materials, fields, data)
+        return scene
 
     @classmethod
     def from_file(cls, path: FileName, *, materials: Optional[FileName] = None) -> "Scene":
@@ -178,10 +142,17 @@ class Scene(Strict):
 
     def copy(self) -> "Scene":
         """Returns an equal scene that can be changed independently."""
-        return self._from_document(self._document(), self._file, self._materials, self._data)
+        scene = Scene.__new__(Scene)
+        vars(scene).update(vars(self), _top=dict(self._top), _table=dict(self._table), _parts={})
+        for key, parts in self._parts.items():
+            scene._put(key, parts)
+        return scene
 
     def _with_materials(self, path: FileName) -> "Scene":
-        return self._from_document(self._document(), self._file, materials_file(path))
+        scene = self.copy()
+        scene._materials = materials_file(path)
+        scene._read_anew()
+        return scene
 
     def replace(self, **fields: Any) -> "Scene":
         """Returns a copy with other fields, all changed at once."""
@@ -195,12 +166,16 @@ class Scene(Strict):
             require(key, parts, LIST)
             self._parts[key] = tuple(self._adopted(key, _PARTS[key], part) for part in parts)
         elif key in _SETTINGS:
-            self._parts[key] = self._settings_of(key, value)
-        elif key in _ROD_KEYS or key in _TOP_KEYS:
-            table = self._table if key in _ROD_KEYS else self._top
-            table.pop(key, None)
-            if value is not None:
-                table[key] = copied(key, value)
+            kind = _SETTINGS[key]
+            if not isinstance(value, kind):
+                table = {} if value is None else value
+                require(key, table, TABLE)
+                for one in table:
+                    require(f"{key}: a key", one, TEXT)
+                value = kind(**table)
+            self._parts[key] = self._adopted(key, kind, value)
+        elif key in _ROD or key in _TOP:
+            store(self._table if key in _ROD else self._top, key, value)
         else:
             raise TypeError(self._no_field(key))
 
@@ -219,48 +194,26 @@ class Scene(Strict):
     def __reduce__(self) -> Any:
         return (Scene._read, (self.to_toml(), self._file, self._materials))
 
-    name = _from_reader("Title for people.")
-    gravity = _from_reader("Gravity [m/s^2], shape (3,).")
-    length = _from_reader("Length of the rod [m].")
-    diameter = _from_reader("Diameter of the rod [m]; 0: not known.")
-    inner_diameter = _from_reader("Inner diameter of a tube [m]; 0: solid.")
-    width = _from_reader("Edge of a rectangular section along d1 [m]; 0: not rectangular.")
-    thickness = _from_reader("Edge of a rectangular section along d2 [m]; 0: not rectangular.")
-    bending_stiffness = _from_reader("EI [N m^2], given or of the material; about d1 if there are two.")
-    mass_per_length = _from_reader("rho A [kg/m], given or of the material.")
-    axial_stiffness = _from_reader("EA [N], given, of the material, or assumed.")
-    torsional_stiffness = quantity("N m^2", "GJ as given [N m^2], or None.")
-    natural_curvature = quantity("1/m", "Natural curvature as given [1/m]: k, [x, y], or rows of such; or None.")
-    natural_twist = quantity("rad/m", "Natural twist as given [rad/m], or None.")
-    rest_shape_error = _from_reader("Largest distance of rest_shape's points from the arcs [m]; NaN without.", True)
-    rest_shape_angle = _from_reader("Largest angle of a given d1 from that of the arcs [rad]; NaN without.", True)
-    joint_stiffness = quantity("N m/rad", "Stiffness of a chain's joints as given [N m/rad], or None.")
-    joint_spacing = quantity("m", "Distance of a chain's joints as given [m], or None.")
-    grippers = _own("A tuple of Gripper; set any iterable of them.")
-    loads = _own("A tuple of Load.")
-    distributed_loads = _own("A tuple of DistributedLoad.")
-    obstacles = _own("A tuple of Obstacle.")
-    sections = _own("A tuple of Section.")
-    youngs_modulus = _from_reader("E of the material [Pa]; 0: not known.", True)
-    density = _from_reader("Density of the material [kg/m^3]; 0: not known.", True)
-    mass = _from_reader("Mass of the rod, with sections [kg].", True)
-    gamma = _from_reader("w l^3 / (EI) [-]: below 0.1 nearly straight, from 1000 on a rope.", True)
-    planar = _from_reader("Whether the rod stays in a plane that contains grips, forces and obstacles in reach.", True)
-    material: Attribute[Optional[Union[str, dict[str, Any]]]] = given(
-        "Name of the material, or a copy of its table, as given; or None."
-    )
-    layers = given("Layers of a cable as given: tables from the inside out; or None.")
-    layer_bound: Attribute[Optional[str]] = given(
-        'Bound of a cable as given: "bonded" or "free" to slip; or None, which is bonded.'
-    )
-    helix: Attribute[Optional[dict[str, Any]]] = given("Helix as given: a copy of its table; or None.")
-    rest_shape = given("Stress-free shape as given: a file's name or points; or None.")
-    force_model: Attribute[ForceModelSettings] = _own("Its settings; set a dict or ForceModelSettings.")
-    medium: Attribute[Medium] = _own("Medium in which the rod is immersed; set a dict or Medium.")
-    track: Attribute[TrackRates] = _own("Sampling rates of its motion; set a dict or TrackRates.")
-    stretch: Attribute[Union[bool, str]] = given(
-        'Whether model exact includes the axial strain, tension over EA; "auto": if it matters.', False
-    )
+
+def _make_fields() -> None:
+    """Gives Scene an attribute for each key, list of parts and derived value, and the signature that names the keys.
+    The value of a key is that of the reader, if it has one."""
+    keys = {**_TOP, **_ROD}
+    for key, row in keys.items():
+        read = operator.attrgetter(f"_data.{key}") if hasattr(_dlo.SceneData, key) else None
+        setattr(Scene, key, field(key, row, read))
+    for key, kind in {**_PARTS, **_SETTINGS}.items():
+        setattr(Scene, key, field(key, _dlo.scene_keys[""][kind._name], lambda scene, key=key: scene._parts[key]))  # type: ignore[misc]
+    for key, member in vars(_dlo.SceneData).items():
+        if isinstance(member, property) and key not in keys:
+            setattr(Scene, key, property(operator.attrgetter(f"_data.{key}"), doc=member.__doc__))
+    named = [inspect.Parameter(key, inspect.Parameter.KEYWORD_ONLY, default=None)
+             for key in (*keys, *_PARTS, *_SETTINGS, "materials") if key != "length"]
+    length = inspect.Parameter("length", inspect.Parameter.POSITIONAL_OR_KEYWORD)
+    setattr(Scene, "__signature__", inspect.Signature([length, *named]))
+
+
+_make_fields()
 
 
 def as_scene(scene: SceneLike, materials: Optional[FileName] = None) -> Scene:
