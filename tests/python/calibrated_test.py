@@ -90,6 +90,16 @@ def test_a_fit_that_predicts_shapes_has_a_file_though_it_is_no_material(stiff):
     numpy.testing.assert_allclose(rod.points, shapes[0][0], atol=1e-3 * scene.length)
 
 
+def test_the_calibrated_rod_is_turned_by_its_rotation(cable):
+    """A clamp held 20 degrees higher than said is that clamp."""
+    text = MATERIAL.replace("4e9", "5e6").replace("2000", "1150")
+    fit = dlo._documents.MaterialFit(None, text + '[[gripper]]\nnumber = 1\nrotation = [0, 0, "20 deg"]\n')
+    raised = cable.copy()
+    raised.grippers[0].direction = "50 deg"
+    numpy.testing.assert_allclose(
+        dlo.solve(cable, samples=9, calibrated=fit).points, dlo.solve(raised, samples=9).points, atol=1e-9)
+
+
 @pytest.mark.parametrize("text", [
     "natural_curvature = 1\n",
     MATERIAL,

@@ -123,14 +123,19 @@ std::shared_ptr<SolvedScene> solve(const SharedScene& scene, const std::string& 
   return solved;
 }
 
-std::shared_ptr<SolvedStates> solve_all(const SharedScene& scene, int samples,
-                                        const py::dict& limits) {
+/// @param make_result  function of a result, the solutions, and the omitted searches
+py::object solve_all(const SharedScene& scene, int samples, const py::object& make_result,
+                     const py::dict& limits) {
   const compare::SolveOptions options = solve_options(limits);
-  return std::make_shared<SolvedStates>(scene, run_long([&](Signals& /*signals*/) {
-                                          return compare::solve_all(scene->scene, options,
-                                                                    samples_of(scene, samples));
-                                        }),
-                                        options.time_limit);
+  compare::AllSolutions found = run_long([&](Signals& /*signals*/) {
+    return compare::solve_all(scene->scene, options, samples_of(scene, samples));
+  });
+  const auto solved = std::make_shared<SolvedStates>(scene, std::move(found), options.time_limit);
+  py::list solutions;
+  for (const Solution& one : solved->found.solutions) {
+    solutions.append(std::make_shared<SolvedScene>(scene, one, options.time_limit));
+  }
+  return make_result(AnyResult(solved), solutions, solved->found.omitted);
 }
 
 /// Binds a view of vectors, one for each of the solution's grippers or obstacles.
@@ -177,33 +182,6 @@ void bind_arrays(Class& bound) {
             [](const Eigen::Vector3d& force) { return &force; });
 }
 
-void bind_equilibria(py::module_& module) {
-  py::class_<SolvedStates, Result, std::shared_ptr<SolvedStates>> equilibria(
-      module, "Equilibria",
-      "Every equilibrium that was found: a sequence of Solution, stable ones first, by energy.");
-  equilibria
-      .def("__len__", [](const SolvedStates& solved) { return solved.found.solutions.size(); })
-      .def(
-          "__getitem__",
-          [](const SolvedStates& solved, py::ssize_t index) {
-            const auto size = static_cast<py::ssize_t>(solved.found.solutions.size());
-            if (index < 0) index += size;
-            if (index < 0 || index >= size) throw py::index_error("no such equilibrium");
-            return std::make_shared<SolvedScene>(
-                solved.scene, solved.found.solutions[static_cast<std::size_t>(index)],
-                solved.time_limit);
-          },
-          py::arg("index"))
-      .def("__iter__",
-           [](const py::object& self) {
-             return py::reinterpret_steal<Typed<py::iterator, "Iterator[Solution]">>(
-                 PySeqIter_New(self.ptr()));
-           })
-      .def_property_readonly(
-          "not_looked", [](const SolvedStates& solved) { return solved.found.omitted; },
-          "Searches for equilibria that were incomplete or not made.");
-}
-
 }  // namespace
 
 compare::SolveOptions solve_options(const py::dict& given) {
@@ -244,13 +222,13 @@ void bind_solve(py::module_& module) {
   };
   bind_fields(solution, compare::solution_fields(), of);
   bind_fields(solution, compare::shape_numbers(), of);
-  bind_equilibria(module);
   module.def("solve", &solve).def("solve_all", &solve_all);
   module.def("plan", [](const SharedScene& scene, double target, double speed, double time_limit) {
     return run_long([&](Signals& /*signals*/) {
       const compare::Plan plan = compare::make_plan(
           scene->scene, {.target = target, .gripper_speed = speed, .time_limit = time_limit});
-      return std::pair(cli::plan_text(plan, scene->scene), cli::json_text(cli::plan_json(plan)));
+      return AnyResult(std::make_shared<Texts>(cli::plan_text(plan, scene->scene),
+                                               cli::json_text(cli::plan_json(plan))));
     });
   });
 }

@@ -17,6 +17,7 @@
 #include "format/json.hpp"
 #include "long_call.hpp"
 #include "module.hpp"
+#include "result.hpp"
 #include "series/study_output.hpp"
 #include "suite/card.hpp"
 
@@ -114,7 +115,7 @@ std::optional<Gate> gate_of(const py::dict& what) {
 
 /// Runs the benchmark set with a function.
 /// @param what  scenes, points, threads, time_limit, state, baseline, update, relative, absolute
-/// @param make_result  function of text, JSON, Markdown, JUnit XML, HTML, changes, and whether it
+/// @param make_result  function of a result, Markdown, JUnit XML, HTML, changes, and whether it
 /// passes
 py::object suite(const py::object& function, const std::string& name, const py::dict& what,
                  const py::object& make_result) {
@@ -147,8 +148,8 @@ py::object suite(const py::object& function, const std::string& name, const py::
         written ? gate->file + " written\n" : cli::regression_changes_text(found.results, "text");
     text += "\n" + *changed;
   }
-  return make_result(text, cli::json_text(compare::cards_json(cards)), cli::cards_markdown(cards),
-                     cli::cards_junit(cards),
+  const AnyResult texts = std::make_shared<Texts>(text, cli::json_text(compare::cards_json(cards)));
+  return make_result(texts, cli::cards_markdown(cards), cli::cards_junit(cards),
                      compare::page_html({cli::card_page(cards.front())}, "dlo suite", DLO_VERSION),
                      changed, passes);
 }

@@ -33,6 +33,17 @@ compare::RodDamping damping_of(const SharedScene& shared, const py::dict& what) 
       shared->calibrated);
 }
 
+/// Motion with the picture of its frames.
+struct Followed : Texts {
+  Followed(std::string text, std::string json, compare::Panel frames)
+      : Texts(std::move(text), std::move(json)), strip(std::move(frames)) {}
+  [[nodiscard]] compare::Panel panel(std::optional<bool> /*in_space*/) const override {
+    return strip;
+  }
+
+  compare::Panel strip;
+};
+
 py::object track(const SharedScene& shared, const py::dict& what, const py::object& make_result,
                  const py::dict& limits) {
   using Given = std::optional<double>;
@@ -55,10 +66,9 @@ py::object track(const SharedScene& shared, const py::dict& what, const py::obje
   });
   const compare::DynamicTrack* dynamic = found.moving();
   const cli::TrackFrames all{.every = 1, .points = true};
-  py::object result = make_result(cli::track_text(found, scene),
-                                  cli::json_text(cli::track_document(found, scene, all).json));
-  result.attr("_strip") = panel_dict(
-      compare::track_figures(scene, {found.track, dynamic}, found.options).strip.panels.front());
+  py::object result = make_result(AnyResult(std::make_shared<Followed>(
+      cli::track_text(found, scene), cli::json_text(cli::track_document(found, scene, all).json),
+      compare::track_figures(scene, {found.track, dynamic}, found.options).strip.panels.front())));
   const std::optional<compare::TrackStop>& stopped =
       dynamic != nullptr ? dynamic->stopped : found.track.stopped;
   if (stopped) {
@@ -83,10 +93,10 @@ compare::MarkerMotion recorded_motion(const RecordedRows& rows, const std::strin
   return compare::parse_markers(text, name);
 }
 
-std::tuple<std::string, std::string, std::string> calibrate_motion(const SharedScene& shared,
-                                                                   const RecordedRows& rows,
-                                                                   const std::string& name,
-                                                                   const py::dict& limits) {
+std::pair<AnyResult, std::string> calibrate_motion(const SharedScene& shared,
+                                                   const RecordedRows& rows,
+                                                   const std::string& name,
+                                                   const py::dict& limits) {
   const compare::MarkerMotion recorded = recorded_motion(rows, name);
   const compare::SolveOptions solve = verified_options(limits);
   const compare::MotionFit found = run_long([&](Signals& signals) {
@@ -95,13 +105,12 @@ std::tuple<std::string, std::string, std::string> calibrate_motion(const SharedS
         {.damping = cli::DampingOptions{}.of(shared->calibrated), .solve = solve},
         [&](const std::string&) { signals.throw_if_stopped(); });
   });
-  const auto [text, json] = texts_of(cli::motion_fit_document(found, shared->scene));
-  return {text, json, found.not_identified.empty() ? cli::motion_toml(found, shared->scene) : ""};
+  return {std::make_shared<Texts>(cli::motion_fit_document(found, shared->scene)),
+          found.not_identified.empty() ? cli::motion_toml(found, shared->scene) : ""};
 }
 
-std::pair<std::string, std::string> check_motion(const SharedScene& shared,
-                                                 const RecordedRows& rows, const py::dict& what,
-                                                 const py::dict& limits) {
+AnyResult check_motion(const SharedScene& shared, const RecordedRows& rows, const py::dict& what,
+                       const py::dict& limits) {
   const compare::Scene& scene = shared->scene;
   compare::MotionCheckRequest request{
       .model = what["dynamic"].cast<bool>() ? compare::MotionModel::with_inertia
@@ -121,7 +130,8 @@ std::pair<std::string, std::string> check_motion(const SharedScene& shared,
     return compare::check_motion(scene, recorded, request,
                                  [&](auto, auto) { signals.throw_if_stopped(); });
   });
-  return {cli::motion_check_text(found), cli::json_text(cli::motion_check_document(found).json)};
+  return std::make_shared<Texts>(cli::motion_check_text(found),
+                                 cli::json_text(cli::motion_check_document(found).json));
 }
 
 }  // namespace

@@ -5,7 +5,6 @@
 #include <optional>
 #include <utility>
 
-#include "array.hpp"
 #include "base/input_file.hpp"
 #include "base/text.hpp"
 #include "bind_scene.hpp"
@@ -16,14 +15,12 @@
 #include "dlo/compare/material_fit.hpp"
 #include "dlo/compare/result_text.hpp"
 #include "dlo/compare/shape_file.hpp"
-#include "fields.hpp"
 #include "format/json.hpp"
 #include "format/result_output.hpp"
 #include "long_call.hpp"
 #include "module.hpp"
 #include "option/share.hpp"
 #include "picture/figures.hpp"
-#include "record/solution_fields.hpp"
 #include "result.hpp"
 
 namespace dlo::python {
@@ -58,18 +55,8 @@ struct Comparison : Result {
   SharedScene of;
 };
 
-constexpr const char* deviation_words = "All deviations by name, in the names' units.";
-constexpr const char* modulus_words =
-    "E*/E at which the energy model is nearest to the shape; NaN if there is none.";
-
-template <typename Compared>
-NumberDict deviations(const Compared& compared) {
-  return dict_of(compare::numbers_of(compare::deviation_fields(), compared.deviation));
-}
-
-std::shared_ptr<Check> check(const SharedScene& scene, const py::object& points,
-                             const py::object& arc_length, const py::dict& what,
-                             const py::dict& limits) {
+AnyResult check(const SharedScene& scene, const py::object& points, const py::object& arc_length,
+                const py::dict& what, const py::dict& limits) {
   const compare::MeasuredShape shape = measured_shape(points, arc_length, "points");
   compare::CheckRequest request{
       .explaining =
@@ -90,8 +77,9 @@ std::shared_ptr<Check> check(const SharedScene& scene, const py::object& points,
       run_long([&](Signals& /*signals*/) { return compare::check(scene->scene, shape, request); }));
 }
 
-std::shared_ptr<Comparison> compare_scene(const SharedScene& scene, bool modulus, bool plan,
-                                          const py::dict& limits) {
+/// @param make_result  function of a result
+py::object compare_scene(const SharedScene& scene, bool modulus, bool plan,
+                         const py::object& make_result, const py::dict& limits) {
   const compare::SolveOptions options = solve_options(limits);
   compare::Comparison found = run_long([&](Signals& /*signals*/) {
     return compare::compare(scene->scene, options,
@@ -99,15 +87,16 @@ std::shared_ptr<Comparison> compare_scene(const SharedScene& scene, bool modulus
                             modulus ? compare::ModulusSearch::yes : compare::ModulusSearch::no);
   });
   const std::string unverified = found.unverified;
-  auto comparison = std::make_shared<Comparison>(std::move(found), scene);
+  py::object comparison =
+      make_result(AnyResult(std::make_shared<Comparison>(std::move(found), scene)));
   if (!unverified.empty()) {
     raise_convergence(fmt::format("{}: the energy model: {}", scene->scene.file, unverified),
-                      py::cast(comparison));
+                      comparison);
   }
   return comparison;
 }
 
-using FitDocuments = std::tuple<std::string, std::string, std::string>;  // text, JSON, TOML
+using FitDocuments = std::pair<AnyResult, std::string>;  // text and JSON, TOML
 
 /// Reads shapes. @param pairs  points or a file's name, and arc lengths;  @param name  name of the
 /// argument
@@ -163,7 +152,8 @@ FitDocuments calibrate_material(const std::vector<SharedScene>& scenes, const py
   } catch (const compare::InputError&) {
     // The rest of the fit is useful without the document.
   }
-  return {compare::to_text(found), compare::to_json(found), std::move(toml)};
+  return {std::make_shared<Texts>(compare::to_text(found), compare::to_json(found)),
+          std::move(toml)};
 }
 
 FitDocuments calibrate_force_model(const std::vector<SharedScene>& scenes,
@@ -178,87 +168,14 @@ FitDocuments calibrate_force_model(const std::vector<SharedScene>& scenes,
     options.progress = [&signals](auto, auto) { signals.throw_if_stopped(); };
     return compare::fit_force_model(scenes_of(scenes), scenes_of(holdouts), options);
   });
-  return {cli::force_model_text(fit, target.has_value()),
-          cli::json_text(cli::force_model_json(fit)), cli::force_model_toml(fit)};
-}
-
-void bind_check(py::module_& module) {
-  using R = const compare::CheckResult&;
-  py::class_<Check, Result, std::shared_ptr<Check>> bound(
-      module, "Check",
-      "Result of check(): a shape compared with its scene's energy model. Arrays are views.");
-  bind_array(bound, "arc_length",
-             "Arc lengths at which the points lie on the rod [m], shape (M,), read only.",
-             [](const Check& c) { return &c.result.check.reference.arc_length; });
-  bind_array(bound, "points",
-             "Registered points in the order of arc_length [m], shape (M, 3), read only.",
-             [](const Check& c) { return &c.result.check.alignment.shape.points; });
-  bind_array(bound, "reference",
-             "Points of the energy model at arc_length [m], shape (M, 3), read only.",
-             [](const Check& c) { return &c.result.check.reference.points; });
-  const auto add = [&bound](const char* name, const char* words, auto get) {
-    bound.def_property_readonly(
-        name, [get](const Check& c) { return get(c.result); }, words);
-  };
-  add("passed", "Whether the shape is within the tolerance, 1 % of the length if none was given.",
-      [](R r) { return r.passes(); });
-  add("verdict",
-      "\"pass\", \"fail\", or \"undetermined\": within the tolerance, but the points do not "
-      "determine the rod.",
-      [](R r) { return std::string(compare::to_string(r.judgement.verdict)); });
-  add("significant",
-      "For a shape that passes: whether the rod without weight and loads would fail. None if "
-      "neither weight nor loads act, or if the shape without them was not found.",
-      [](R r) { return r.judgement.significant; });
-  add("deflection",
-      "Largest distance between the rod with and without weight and loads [m]; NaN where neither a "
-      "pass nor the tolerance needs it.",
-      [](R r) { return r.deflection_m; });
-  add("reason", "Reason for the verdict, as text.", [](R r) { return r.judgement.reason; });
-  add("rms", "RMS distance of the points from the rod [m].",
-      [](R r) { return r.check.deviation.rms_m; });
-  add("largest", "Largest distance of a point [m].", [](R r) { return r.check.deviation.max_m; });
-  add("energy_above_lowest",
-      "Energy of the equilibrium compared minus that of the lowest stable one known [J].",
-      [](R r) { return r.check.state.energy_above_lowest_J(); });
-  add("worst_point", "Number of the point with the largest distance, from 1 as in the file.",
-      [](R r) { return r.check.worst_point; });
-  add("deviation", deviation_words, [](R r) { return deviations(r.check); });
-  add("modulus_ratio", modulus_words, [](R r) { return r.check.effective_modulus.ratio; });
-  add("explanations",
-      "For a shape that fails: pairs (cause, RMS distance if the cause applies [m]), best first.",
-      [](R r) {
-        std::vector<std::pair<std::string, double>> list;
-        for (const compare::Explanation& e : r.explanations) list.emplace_back(e.cause, e.rms_m);
-        return list;
-      });
-}
-
-void bind_comparison(py::module_& module) {
-  py::class_<Comparison, Result, std::shared_ptr<Comparison>> bound(
-      module, "Comparison", "Result of compare(): force model and energy model of a scene.");
-  bind_array(bound, "arc_length",
-             "Arc lengths of the force model's points [m], shape (N,), read only.",
-             [](const Comparison& c) { return &c.result.reference.arc_length; });
-  bind_array(bound, "force_points",
-             "Points of the force model at rest [m], shape (N, 3), read only.",
-             [](const Comparison& c) { return &c.result.force.shape.points; });
-  bind_array(bound, "energy_points",
-             "Points of the energy model at arc_length [m], shape (N, 3), read only.",
-             [](const Comparison& c) { return &c.result.reference.points; });
-  bound
-      .def_property_readonly(
-          "deviation", [](const Comparison& c) { return deviations(c.result); }, deviation_words)
-      .def_property_readonly(
-          "modulus_ratio", [](const Comparison& c) { return c.result.effective_modulus.ratio; },
-          modulus_words);
+  return {std::make_shared<Texts>(cli::force_model_text(fit, target.has_value()),
+                                  cli::json_text(cli::force_model_json(fit))),
+          cli::force_model_toml(fit)};
 }
 
 }  // namespace
 
 void bind_judge(py::module_& module) {
-  bind_check(module);
-  bind_comparison(module);
   module.def("check", &check)
       .def("compare", &compare_scene)
       .def("calibrate_material", &calibrate_material)

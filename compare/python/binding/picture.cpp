@@ -66,15 +66,18 @@ void bind_result(py::module_& module) {
           "for None; returned.")
       .def("_panel",
            [](const Result& result, std::optional<bool> in_space) {
-             const compare::Drawing drawn = result.drawing();
-             return panel_dict(in_space.value_or(drawn.views.size() > 1)
-                                   ? compare::spatial_panel(drawn)
-                                   : compare::shape_panels(drawn).front());
+             return panel_dict(result.panel(in_space));
            })
       .def("__str__", &Result::text)
       .def("__repr__", in_python("dlo._show", "line"))
       .def("_repr_html_", in_python("dlo._show", "html"))
       .def("_repr_svg_", in_python("dlo._show", "svg"));
+}
+
+compare::Panel Result::panel(std::optional<bool> in_space) const {
+  const compare::Drawing drawn = drawing();
+  return in_space.value_or(drawn.views.size() > 1) ? compare::spatial_panel(drawn)
+                                                   : compare::shape_panels(drawn).front();
 }
 
 py::dict panel_dict(const compare::Panel& described) {

@@ -3,6 +3,8 @@
 #include <pybind11/pybind11.h>
 #include <pybind11/stl.h>
 
+#include <memory>
+#include <optional>
 #include <string>
 #include <utility>
 
@@ -56,13 +58,8 @@ void refuse_new(Class& bound, const char* maker) {
 /// Returns a panel as _plot.py draws it.
 [[nodiscard]] py::dict panel_dict(const compare::Panel& described);
 
-/// Returns text and JSON of a document.
-[[nodiscard]] inline std::pair<std::string, std::string> texts_of(
-    const compare::Document& document) {
-  return {document.text(), cli::json_text(document.json)};
-}
-
-/// Result with a shape. It never changes after its construction.
+/// Result of a computation, from which Python's object is made. It never changes after its
+/// construction.
 struct Result {
   virtual ~Result() = default;
 
@@ -70,8 +67,26 @@ struct Result {
   [[nodiscard]] virtual std::string text() const = 0;
   /// Returns the document of the command with `--format json`.
   [[nodiscard]] virtual std::string json() const = 0;
-  /// Returns the picture of the command.
-  [[nodiscard]] virtual compare::Drawing drawing() const = 0;
+  /// Returns the picture of the command, of a result with a shape.
+  [[nodiscard]] virtual compare::Drawing drawing() const { return {}; }
+  /// Returns the part of the picture that Python draws.
+  /// @param in_space  whether it is drawn in space; empty: unless it lies in a plane
+  [[nodiscard]] virtual compare::Panel panel(std::optional<bool> in_space) const;
+};
+
+using AnyResult = std::shared_ptr<Result>;
+
+/// Result whose text and JSON are known.
+struct Texts : Result {
+  Texts(std::string text, std::string json) : text_(std::move(text)), json_(std::move(json)) {}
+  explicit Texts(const compare::Document& document)
+      : Texts(document.text(), cli::json_text(document.json)) {}
+
+  [[nodiscard]] std::string text() const override { return text_; }
+  [[nodiscard]] std::string json() const override { return json_; }
+
+ private:
+  std::string text_, json_;
 };
 
 }  // namespace dlo::python

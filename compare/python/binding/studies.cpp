@@ -61,8 +61,6 @@ struct Column {
   }
 };
 
-using StudyDocuments = std::pair<std::string, std::string>;  // text and JSON
-
 /// Largest number of rows of a table, which is stored in memory: about half a gigabyte.
 constexpr std::int64_t largest_table = 1'000'000;
 
@@ -115,9 +113,8 @@ py::dict sweep(const std::string& text, const std::string& file, const Materials
   return arrays;
 }
 
-StudyDocuments hard_cases(const std::string& name_contains,
-                          const std::vector<std::string>& steppers, std::optional<long> max_steps,
-                          int threads) {
+AnyResult hard_cases(const std::string& name_contains, const std::vector<std::string>& steppers,
+                     std::optional<long> max_steps, int threads) {
   compare::StabilityOptions options;
   options.name_contains = name_contains;
   options.threads = threads;
@@ -132,12 +129,12 @@ StudyDocuments hard_cases(const std::string& name_contains,
   }
   return run_long([&](Signals& signals) {
     options.progress = [&signals](auto, auto) { signals.throw_if_stopped(); };
-    return texts_of(cli::hard_cases_document(compare::stability(options)));
+    return std::make_shared<Texts>(cli::hard_cases_document(compare::stability(options)));
   });
 }
 
-StudyDocuments stability_map(const std::optional<SharedScene>& scene, const std::string& axis,
-                             int columns, int rows, long steps, int threads) {
+AnyResult stability_map(const std::optional<SharedScene>& scene, const std::string& axis,
+                        int columns, int rows, long steps, int threads) {
   if (axis != "cF-cc" && axis != "cF-ch") compare::refuse_choice(axis, {"cF-cc", "cF-ch"});
   compare::StabilityMapOptions options{
       .axis = axis == "cF-cc" ? compare::MapAxis::c_c : compare::MapAxis::c_h,
@@ -147,14 +144,14 @@ StudyDocuments stability_map(const std::optional<SharedScene>& scene, const std:
       .threads = threads};
   return run_long([&](Signals& signals) {
     options.progress = [&signals](auto, auto) { signals.throw_if_stopped(); };
-    return texts_of(cli::stability_map_document(
+    return std::make_shared<Texts>(cli::stability_map_document(
         compare::stability_map(scene ? (*scene)->scene : compare::hard_case_scene(), options)));
   });
 }
 
-StudyDocuments bench(const std::vector<SharedScene>& shared, double seconds, int repeats) {
+AnyResult bench(const std::vector<SharedScene>& shared, double seconds, int repeats) {
   return run_long([&](Signals& signals) {
-    return texts_of(cli::benchmark_document(
+    return std::make_shared<Texts>(cli::benchmark_document(
         compare::run_benchmark(scenes_of(shared), {.budget_s = seconds, .repeats = repeats},
                                [&signals](const auto&) { signals.throw_if_stopped(); })));
   });
@@ -174,8 +171,8 @@ py::object modes(const SharedScene& scene, const py::dict& what, const py::objec
       .count = count, .rate = rate, .damping = damping, .solve = solve_options(limits)};
   const compare::SceneModes found =
       run_long([&](Signals& /*signals*/) { return compare::scene_modes(scene->scene, options); });
-  const auto [text, json] = texts_of(cli::modes_document(found, scene->scene, rate, samples));
-  py::object result = make_result(text, json);
+  py::object result = make_result(
+      AnyResult(std::make_shared<Texts>(cli::modes_document(found, scene->scene, rate, samples))));
   if (!succeeded(found.status)) {
     raise_convergence(scene->scene.file + ": " + found.message, result);
   }
@@ -183,7 +180,7 @@ py::object modes(const SharedScene& scene, const py::dict& what, const py::objec
 }
 
 /// Compares scenes with a baseline. @param what  model, programs, relative, absolute, tolerance
-/// @param make_result  function of text, JSON, JUnit XML
+/// @param make_result  function of a result and JUnit XML
 py::object regress(const std::vector<SharedScene>& scenes, const std::string& file, bool update,
                    const py::dict& what, const py::object& make_result, const py::dict& limits) {
   const auto model = what["model"].cast<std::string>();
@@ -208,10 +205,11 @@ py::object regress(const std::vector<SharedScene>& scenes, const std::string& fi
     return measured;
   });
   const bool good = update ? found.solved() : found.passes();
-  py::object result = make_result(written ? cli::baseline_update_text(found.results)
-                                          : cli::regression_text(found.results, "text"),
-                                  cli::json_text(cli::regression_json(found.results, good)),
-                                  compare::junit_xml(found.results));
+  const AnyResult texts =
+      std::make_shared<Texts>(written ? cli::baseline_update_text(found.results)
+                                      : cli::regression_text(found.results, "text"),
+                              cli::json_text(cli::regression_json(found.results, good)));
+  py::object result = make_result(texts, compare::junit_xml(found.results));
   if (update && !written) {
     raise_convergence("regress: a scene was not solved, the baseline is left as it was", result);
   }

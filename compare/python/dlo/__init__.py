@@ -18,7 +18,7 @@ notebook shows verdict, picture and text. Long calls let other threads run, and 
 """
 
 from . import _documents, _functions, _loops, _parts, _scene, _studies
-from ._dlo import Check, Comparison, Equilibria, Solution, __version__
+from ._dlo import Solution, __version__
 from ._documents import *
 from ._errors import ConvergenceError, InputError
 from ._functions import *
@@ -27,7 +27,7 @@ from ._parts import *
 from ._scene import *
 from ._studies import *
 
-__all__ = ["Check", "Comparison", "ConvergenceError", "Equilibria", "InputError", "Solution", "__version__"]
+__all__ = ["ConvergenceError", "InputError", "Solution", "__version__"]
 __all__ += _documents.__all__
 __all__ += _functions.__all__
 __all__ += _loops.__all__

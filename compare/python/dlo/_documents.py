@@ -3,20 +3,21 @@
 from __future__ import annotations
 
 import json
+import math
 from dataclasses import dataclass
 from functools import cached_property
-from typing import Any, Callable, Optional
+from typing import Any, Callable, Iterator, NamedTuple, Optional, Union
 
 import numpy
 from numpy.typing import NDArray
 
-from . import _plot, _show
+from . import _dlo, _plot, _show
 from ._arguments import Attribute, Value
 from ._errors import InputError
 
 __all__ = [
-    "Benchmark", "Document", "ForceModelFit", "MaterialFit", "Modes", "MotionCheck", "MotionFit", "Plan", "Regression",
-    "ScoreCard", "Stability", "Track",
+    "Benchmark", "Check", "Comparison", "Document", "Equilibria", "ForceModelFit", "MaterialFit", "Modes",
+    "MotionCheck", "MotionFit", "Plan", "Regression", "ScoreCard", "Stability", "Track",
 ]
 
 
@@ -46,34 +47,76 @@ def _causes(values: Any) -> list[tuple[str, float]]:
     return [(cause["cause"], cause["rms_m"]) for cause in values]
 
 
+def _as_it_is(value: Any) -> Any:
+    return value
+
+
+def _or_nan(value: Any) -> float:
+    return math.nan if value is None else float(value)
+
+
 def _number(value: Any) -> Optional[float]:
     return None if value is None else float(value)
+
+
+class _Kept(NamedTuple):
+    """The part of a result that a pickled document keeps."""
+
+    text: str
+    json_text: str
+    panel: Optional[dict[str, Any]]
+
+    def __str__(self) -> str:
+        return self.text
+
+    def to_json(self) -> str:
+        return self.json_text
+
+    def _panel(self, in_space: Optional[bool]) -> Any:
+        return self.panel
 
 
 @dataclass(repr=False, eq=False)
 class Document:
     """A result as the command writes it: str() is its text, json its JSON as a dict."""
 
-    _text: str
-    _json_text: str
+    _made: Union[_dlo.Result, _Kept]
 
     @cached_property
     def json(self) -> dict[str, Any]:
         """The command's document, as a dict."""
-        return json.loads(self._json_text)
+        return json.loads(self.to_json())
 
     def to_json(self) -> str:
         """The command's document, as text."""
-        return self._json_text
+        return self._made.to_json()
+
+    def __getstate__(self) -> dict[str, Any]:
+        panel = self._made._panel(None) if isinstance(self, Drawn) else None
+        return {**vars(self), "_made": _Kept(str(self), self.to_json(), panel)}
 
     def __getitem__(self, key: str) -> Any:
         return self.json[key]
 
     def __str__(self) -> str:
-        return self._text
+        return str(self._made)
 
     __repr__ = _show.line
     _repr_html_ = _show.html
+
+
+class Drawn(Document):
+    """A document with a picture."""
+
+    def _panel(self, in_space: Optional[bool]) -> dict[str, Any]:
+        return self._made._panel(in_space)
+
+    def plot(self, ax: Any = None) -> Any:
+        """Draws the shape with matplotlib, at equal aspect, or nine frames of a motion, row by row, or all if there are
+        fewer. ax: the axes to draw into, new ones for None; returned."""
+        return _plot.plot(self, ax)
+
+    _repr_svg_ = _show.svg
 
 
 class Plan(Document):
@@ -107,20 +150,8 @@ def _moving(path: str, doc: str) -> Attribute[NDArray[numpy.float64]]:
     return Attribute(read, doc=doc)
 
 
-class Track(Document):
+class Track(Drawn):
     """A rod while its grippers or obstacles move, frame by frame; result of track()."""
-
-    _strip: dict[str, Any]
-
-    def _panel(self, in_space: Optional[bool]) -> dict[str, Any]:
-        return self._strip
-
-    def plot(self, ax: Any = None) -> Any:
-        """Draws nine of the frames, or all if there are fewer, with matplotlib, row by row, at equal aspect, and
-        returns the axes. ax: the axes to draw into; None: new ones."""
-        return _plot.plot(self, ax)
-
-    _repr_svg_ = _show.svg
 
     arc_length = _at("arc_length_m", _array, "Arc lengths of the frames' points [m], shape (M,).")
     time = _at("frames/*/time_s", _array, "Of the frames [s], shape (F,).")
@@ -134,6 +165,68 @@ class Track(Document):
     moving_points = _moving("points_m", "Positions of the rod with inertia [m], shape (F, M, 3), with dynamic=True.")
     moving_gripper_forces = _moving("grippers/*/force_N", "Force of each gripper on it [N], shape (F, G, 3).")
     moving_gripper_torques = _moving("grippers/*/torque_Nm", "Torque of each gripper on it [N m], shape (F, G, 3).")
+
+
+def _deviations(values: Any) -> dict[str, float]:
+    return {key: _or_nan(value) for key, value in values.items() if isinstance(value, (float, type(None)))}
+
+
+class Check(Drawn):
+    """A shape compared with its scene's energy model; result of check()."""
+
+    passed = _at("verdict", _passes, "Whether it is within the tolerance, 1 % of the length if none was given.")
+    verdict = _at(
+        "verdict", str, '"pass", "fail", or "undetermined": within the tolerance, but the points do not determine the rod.'
+    )
+    significant = _at(
+        "significant", _as_it_is, "For a shape that passes: whether the rod without weight and loads would fail. "
+        "None if neither acts, or if the shape without them was not found."
+    )
+    deflection = _at(
+        "deflection_m", _or_nan, "Largest distance between the rod with and without weight and loads [m]; "
+        "NaN where neither a pass nor the tolerance needs it."
+    )
+    reason = _at("reason", str, "Reason for the verdict, as text.")
+    rms = _at("deviation/rms_m", float, "RMS distance of the points from the rod [m].")
+    largest = _at("deviation/max_m", float, "Largest distance of a point [m].")
+    energy_above_lowest = _at(
+        "state/energy_above_lowest_J", float, "Energy of the equilibrium compared minus the lowest stable one's [J]."
+    )
+    worst_point = _at("deviation/worst_point", int, "Number of the point with the largest distance, from 1.")
+    deviation = _at("deviation", _deviations, "All deviations by name, in the names' units.")
+    modulus_ratio = _at("effective_modulus_ratio", _or_nan, "E*/E at which the energy model is nearest; or NaN.")
+    explanations = _at("explanations", _causes, "Causes of a failure: (cause, RMS distance that it leaves [m]), best first.")
+    arc_length = _at("arc_length_m", _array, "Arc lengths at which the points lie on the rod [m], shape (M,).")
+    points = _at("points_m", _array, "Registered points in the order of arc_length [m], shape (M, 3).")
+    reference = _at("reference_points_m", _array, "Points of the energy model at arc_length [m], shape (M, 3).")
+
+
+class Comparison(Drawn):
+    """Force model and energy model of a scene; result of compare()."""
+
+    deviation = _at("cases/0/deviation", _deviations, "All deviations by name, in the names' units.")
+    modulus_ratio = _at("cases/0/effective_modulus_ratio", _or_nan, "E*/E at which the energy model is nearest; or NaN.")
+    arc_length = _at("cases/0/arc_length_m", _array, "Arc lengths of the force model's points [m], shape (N,).")
+    force_points = _at("cases/0/force_points_m", _array, "Points of the force model at rest [m], shape (N, 3).")
+    energy_points = _at("cases/0/energy_points_m", _array, "Points of the energy model there [m], shape (N, 3).")
+
+
+@dataclass(repr=False, eq=False)
+class Equilibria(Drawn):
+    """Every equilibrium that was found: a sequence of Solution, stable ones first, by energy; result of solve_all().
+    not_looked: searches for equilibria that were incomplete or not made."""
+
+    _solutions: list[_dlo.Solution]
+    not_looked: list[str]
+
+    def __len__(self) -> int:
+        return len(self._solutions)
+
+    def __getitem__(self, key: Any) -> Any:
+        return self.json[key] if isinstance(key, str) else self._solutions[key]
+
+    def __iter__(self) -> Iterator[_dlo.Solution]:
+        return iter(self._solutions)
 
 
 class MotionCheck(Document):
@@ -162,7 +255,7 @@ class Regression(Document):
     def reason(self) -> str:
         """Number of cases with each verdict; for an update that has succeeded, that the baseline is written."""
         written = self._update and self.passed
-        return f"{self._update} written" if written else self._text.splitlines()[-1]
+        return f"{self._update} written" if written else str(self).splitlines()[-1]
 
     def to_junit(self) -> str:
         """Returns JUnit XML, as `dlo regress --junit` writes it."""

@@ -9,7 +9,7 @@ from numpy.typing import ArrayLike
 
 from . import _dlo
 from ._arguments import LIST, checked, require
-from ._documents import ForceModelFit, MaterialFit, MotionCheck, MotionFit, Plan
+from ._documents import Check, Comparison, Equilibria, ForceModelFit, MaterialFit, MotionCheck, MotionFit, Plan
 from ._errors import InputError
 from ._files import FileName, file_name
 from ._parts import Quantity, number_of
@@ -96,16 +96,16 @@ def solve(
 def solve_all(
     scene: SceneLike, samples: Optional[int] = None, *, time: Optional[float] = None,
     materials: Optional[FileName] = None, calibrated: Optional[Calibrated] = None, **limits: Any,
-) -> _dlo.Equilibria:
+) -> Equilibria:
     """Returns every equilibrium that the energy model finds, with its stability: `dlo solve --all`.
 
     samples, time, materials, calibrated: as in solve().
     """
-    return _dlo.solve_all(data_of(scene, materials, time, calibrated), samples or 0, limits)
+    return _dlo.solve_all(data_of(scene, materials, time, calibrated), samples or 0, Equilibria, limits)
 
 
 @overload
-def check(scene: SceneLike, points: Union[ArrayLike, FileName], **options: Any) -> _dlo.Check: ...
+def check(scene: SceneLike, points: Union[ArrayLike, FileName], **options: Any) -> Check: ...
 
 
 @overload
@@ -123,7 +123,7 @@ def check(
     drag: Optional[float] = None, quadratic_drag: Optional[float] = None, begin: Optional[float] = None,
     frame_rate: Optional[float] = None, materials: Optional[FileName] = None, calibrated: Optional[Calibrated] = None,
     **limits: Any,
-) -> Union[_dlo.Check, MotionCheck]:
+) -> Union[Check, MotionCheck]:
     """Compares points with the shape that the scene's rod would take: `dlo check`.
 
     points: positions in order along the rod, from either end [m], shape (M, 3), or (M, 2) with z = 0; parts of the rod
@@ -149,25 +149,25 @@ def check(
         if points is not None:
             raise InputError("check: points and motion (allowed: one of them)")
         data = data_of(scene, materials, None, calibrated)
-        return MotionCheck(*_dlo.check_motion(data, _recorded(motion), what, limits))
+        return MotionCheck(_dlo.check_motion(data, _recorded(motion), what, limits))
     if points is None:
         raise InputError("check: nothing to check (allowed: points, or motion)")
     data = data_of(scene, materials, None, calibrated)
     taken: Any = file_name(points, "points") if is_file(points) else points
-    return _dlo.check(data, taken, arc_length, what, limits)
+    return Check(_dlo.check(data, taken, arc_length, what, limits))
 
 
 @checked()
 def compare(
     scene: SceneLike, *, modulus: bool = True, plan: bool = False, time: Optional[float] = None,
     materials: Optional[FileName] = None, calibrated: Optional[Calibrated] = None, **limits: Any,
-) -> _dlo.Comparison:
+) -> Comparison:
     """Compares the force model with the energy model and states the causes of their distance: `dlo compare`.
 
     modulus: whether E*/E is computed. plan: whether a plan is made too, as by `dlo compare --explain`, which
     takes about ten solves. time, materials, calibrated: as in solve().
     """
-    return _dlo.compare(data_of(scene, materials, time, calibrated), modulus, plan, limits)
+    return _dlo.compare(data_of(scene, materials, time, calibrated), modulus, plan, Comparison, limits)
 
 
 @checked()
@@ -180,7 +180,7 @@ def plan(
     target: requested RMS error divided by the rod's length. gripper_speed: speed of a gripper [m/s].
     time_limit: limit for all solves of the plan [s]. time, materials, calibrated: as in solve().
     """
-    return Plan(*_dlo.plan(data_of(scene, materials, time, calibrated), target, gripper_speed, time_limit))
+    return Plan(_dlo.plan(data_of(scene, materials, time, calibrated), target, gripper_speed, time_limit))
 
 
 _CALIBRATED_QUANTITIES = {

@@ -118,7 +118,8 @@ def field(key: str, row: tuple[str, ...], reader: Optional[Callable[[Any], Any]]
         value = owner._table.get(key)
         return default if value is None else read(value)
 
-    return property(reader or get, lambda owner, value: owner._put_one(key, value), doc=f"[{unit}] {words}" if unit else words)
+    doc = f"[{unit}] {words}" if unit else words
+    return property(reader or get, lambda owner, value: owner._put_one(key, value), doc=doc)
 
 
 def store(table: dict[str, Any], key: str, value: Any) -> None:

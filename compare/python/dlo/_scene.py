@@ -77,7 +77,7 @@ class Scene(Strict):
             self._data = data
 
     def _adopted(self, key: str, kind: type[Part], part: Any) -> Part:
-        """Returns a copy of the part that belongs to this scene. Values of keys never change, so that they are shared."""
+        """Returns a copy of the part that belongs to this scene. Both share the values of keys, which never change."""
         if not isinstance(part, kind):
             raise InputError(f"{key}: a {type(part).__name__} (allowed: {kind.__name__})", key)
         mine = kind.__new__(kind)
@@ -203,7 +203,8 @@ def _make_fields() -> None:
         read = operator.attrgetter(f"_data.{key}") if hasattr(_dlo.SceneData, key) else None
         setattr(Scene, key, field(key, row, read))
     for key, kind in {**_PARTS, **_SETTINGS}.items():
-        setattr(Scene, key, field(key, _dlo.scene_keys[""][kind._name], lambda scene, key=key: scene._parts[key]))  # type: ignore[misc]
+        row = _dlo.scene_keys[""][kind._name]
+        setattr(Scene, key, field(key, row, lambda scene, key=key: scene._parts[key]))  # type: ignore[misc]
     for key, member in vars(_dlo.SceneData).items():
         if isinstance(member, property) and key not in keys:
             setattr(Scene, key, property(operator.attrgetter(f"_data.{key}"), doc=member.__doc__))

@@ -84,9 +84,9 @@ def stability(
     if map is None:
         if scene is not None:
             raise InputError("stability: only a map takes a scene (allowed: map=\"cF-cc\")")
-        return Stability(*_dlo.hard_cases(case, list(steppers), max_steps, threads))
+        return Stability(_dlo.hard_cases(case, list(steppers), max_steps, threads))
     data = None if scene is None else data_of(scene)
-    return Stability(*_dlo.stability_map(data, map, columns, rows, map_steps, threads))
+    return Stability(_dlo.stability_map(data, map, columns, rows, map_steps, threads))
 
 
 @checked()
@@ -98,7 +98,7 @@ def bench(
     scenes: one or more; none: a steel rod and one a hundred times softer. seconds: time for all runs.
     repeats: runs per median.
     """
-    return Benchmark(*_dlo.bench(list(map(data_of, many(scenes))), seconds, repeats))
+    return Benchmark(_dlo.bench(list(map(data_of, many(scenes))), seconds, repeats))
 
 
 @checked()
