@@ -12,6 +12,7 @@
 #include "format/json.hpp"
 #include "polygon/point_layout.hpp"
 #include "record/field.hpp"
+#include "scene/members.hpp"
 #include "scene/scene_problem.hpp"
 
 namespace dlo::compare {
@@ -21,7 +22,18 @@ Json vector_json(const Eigen::Vector3d& vector) { return to_json(vector); }
 
 /// Returns null for zero, which represents a quantity that is unknown, or that the rod does not
 /// need.
-Json known(double value) { return value > 0 ? Json(value) : Json(); }
+Json known(std::optional<double> value) { return value.value_or(0) != 0 ? Json(*value) : Json(); }
+
+/// Returns a key with its SI unit, as documents have it: "mass_per_length_kg_per_m".
+std::string document_key(const SceneKey& key) {
+  const std::vector<std::string> units = unit_names(key.dimension);
+  if (units.empty()) return key.name;
+  std::string unit = units.front();
+  std::erase_if(unit, [](char c) { return c == ' ' || c == '^'; });
+  if (unit.starts_with("1/")) return key.name + "_per_" + unit.substr(2);
+  const std::size_t over = unit.find('/');
+  return key.name + "_" + (over == std::string::npos ? unit : unit.replace(over, 1, "_per_"));
+}
 
 Json stiffnesses_document(double first, const std::optional<double>& second) {
   return {first, second.value_or(first)};
@@ -56,12 +68,12 @@ Json rod_document(const Scene& scene) {
       curvature.push_back({term.x(), term.y()});
     }
   }
-  return {
-      {"length_m", scene.length},
-      {"diameter_m", known(scene.diameter)},
+  Json rod;
+  each_member(scene, [&rod](const char* key, const auto& value) {
+    rod[document_key(scene_table("rod").key(key))] = known(value);
+  });
+  rod.update(Json{
       {"inner_diameter_m", known(scene.inner_diameter)},
-      {"width_m", known(scene.width)},
-      {"thickness_m", known(scene.thickness)},
       {"cross_section_m2", known(scene.cross_section())},
       {"material", scene.material.name.empty() ? Json() : Json(scene.material.name)},
       {"youngs_modulus_Pa", known(scene.material.youngs_modulus)},
@@ -80,7 +92,8 @@ Json rod_document(const Scene& scene) {
       {"layers", layers_document(scene)},
       {"rest_shape", rest_shape_document(scene)},
       {"first_frame", scene.has_material_directors() ? points_json(scene.first_frame()) : Json()},
-      {"sections", sections_document(scene)}};
+      {"sections", sections_document(scene)}});
+  return rod;
 }
 
 Json gripper_document(const Gripper& gripper) {

@@ -75,8 +75,10 @@ bool read_layers(StrictTable& rod, const std::vector<Material>& known_materials,
   scene.given_bending_stiffness =
       section.bonded ? section.bonded_bending_stiffness : section.free_bending_stiffness;
   scene.given_mass_per_length = section.mass_per_length;
-  scene.torsional_stiffness =
-      section.bonded ? section.bonded_torsional_stiffness : section.free_torsional_stiffness;
+  if (!scene.torsional_stiffness) {
+    scene.torsional_stiffness =
+        section.bonded ? section.bonded_torsional_stiffness : section.free_torsional_stiffness;
+  }
   scene.layers = section;
   return true;
 }

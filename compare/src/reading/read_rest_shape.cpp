@@ -39,7 +39,6 @@ void read_natural_strains(StrictTable& rod, Scene& scene) {
     scene.natural_strain.head<2>() = curvature.front();
     scene.natural_variation.assign(curvature.begin() + 1, curvature.end());
   }
-  rod.read("natural_twist", scene.natural_strain.z());
   if (std::optional<StrictTable> helix = rod.optional_table("helix")) {
     const double radius = helix->number("radius");
     const double pitch = helix->number("pitch");

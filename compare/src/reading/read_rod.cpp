@@ -5,6 +5,7 @@
 #include <iterator>
 
 #include "reading/read_parts.hpp"
+#include "scene/members.hpp"
 #include "toml/strict_table.hpp"
 
 namespace dlo::compare {
@@ -39,13 +40,10 @@ std::optional<GivenBending> read_bending(StrictTable& rod, double length) {
       std::nullopt};
 }
 
-/// Reads a circle, a ring, or a rectangle.
+/// Reads what a circle or a ring has in addition to its diameter.
 void read_cross_section(StrictTable& rod, Scene& scene) {
-  if (rod.read("width", scene.width)) {
-    scene.thickness = rod.number("thickness");
-    return;
-  }
-  scene.diameter = rod.number("diameter");
+  if (rod.has("width")) return;
+  (void)rod.number("diameter");  // required
   const Range bore{0, std::nextafter(scene.diameter, 0), false,
                    fmt::format("0 to less than diameter, {:g} m", scene.diameter)};
   scene.inner_diameter = rod.optional_number("inner_diameter", Dimension::length, bore).value_or(0);
@@ -58,7 +56,7 @@ void read_stiffness(StrictTable& rod, const std::vector<Material>& known_materia
     scene.given_bending_stiffness_2 = given->about_d2;
   }
   const bool has_bending = scene.given_bending_stiffness.has_value();
-  const bool has_mass = rod.read("mass_per_length", scene.given_mass_per_length);
+  const bool has_mass = rod.has("mass_per_length");
   const bool has_material = rod.has("material");
   if (!has_material && has_bending != has_mass) {
     const char* bending = rod.has("joint_stiffness") ? "joint_stiffness" : "bending_stiffness";
@@ -125,17 +123,14 @@ Section read_section(StrictTable& table, const Scene& scene) {
   section.bending_stiffness = bending.about_d1;
   section.bending_stiffness_2 = bending.about_d2;
   section.mass_per_length = scene.mass_per_length();
-  const bool has_mass = table.read("mass_per_length", section.mass_per_length);
-  const bool has_torsion = table.read("torsional_stiffness", section.torsional_stiffness);
-  const bool has_curvature = table.read("natural_curvature", section.natural_curvature);
-  const bool has_twist = table.read("natural_twist", section.natural_twist);
-  if (!table.has("bending_stiffness") && !has_mass && !has_torsion && !has_curvature &&
-      !has_twist) {
+  read_members(table, section);
+  const bool has_ends_alone = table.keys().size() == 2;
+  if (has_ends_alone) {
     table.fail("bending_stiffness",
                "missing, and so are mass_per_length, torsional_stiffness, natural_curvature and "
                "natural_twist (allowed: one of the five or more; the others are the rod's own)");
   }
-  if (has_torsion && !scene.torsional_stiffness) {
+  if (section.torsional_stiffness && !scene.torsional_stiffness) {
     table.fail("torsional_stiffness",
                "the rod has none (allowed: rod.torsional_stiffness too, or none here)");
   }
@@ -187,11 +182,9 @@ void read_stretch(StrictTable& rod, Scene& scene) {
 
 void read_rod(StrictTable& rod, std::vector<StrictTable>& sections,
               const std::vector<Material>& known_materials, Scene& scene) {
-  scene.length = rod.number("length");
+  read_members(rod, scene);
   if (!read_layers(rod, known_materials, scene)) read_stiffness(rod, known_materials, scene);
-  rod.read("axial_stiffness", scene.given_axial_stiffness);
   read_stretch(rod, scene);
-  rod.read("torsional_stiffness", scene.torsional_stiffness);
   read_natural_strains(rod, scene);
   read_sections(sections, scene);
   read_rest_shape(rod, sections, scene);

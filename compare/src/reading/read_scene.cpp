@@ -12,7 +12,7 @@
 #include "dlo/compare/error.hpp"
 #include "dlo/compare/shape_file.hpp"
 #include "reading/read_parts.hpp"
-#include "scene/read_force_model.hpp"
+#include "scene/members.hpp"
 #include "toml/strict_table.hpp"
 #include "trajectory/read_trajectory.hpp"
 #include "trajectory/trajectory_files.hpp"

@@ -9,7 +9,7 @@
 #include "base/input_file.hpp"
 #include "dlo/compare/bending_rule.hpp"
 #include "dlo/compare/error.hpp"
-#include "scene/read_force_model.hpp"
+#include "scene/members.hpp"
 #include "toml/strict_table.hpp"
 
 namespace dlo::compare {
@@ -78,7 +78,7 @@ double paper_bending_stiffness(BendingRule rule, double bending_stiffness, doubl
 ForceModelSettings read_force_model(StrictTable& table) {
   table.follow("force_model");
   ForceModelSettings settings;
-  each_member(settings, [&table](const char* key, auto& value) { table.read(key, value); });
+  read_members(table, settings);
   table.finish();
   return settings;
 }
