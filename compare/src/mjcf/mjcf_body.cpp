@@ -15,12 +15,11 @@ constexpr std::string_view cable_plugin = "mujoco.elasticity.cable";
 
 /// Reads the values of a <plugin> or <instance>.
 void read_config(const MjcfNode& node, MjcfPlugin& plugin) {
-  for (const pugi::xml_node& child : node.element.children()) {
-    if (child.type() != pugi::node_element) continue;
-    const MjcfNode config{node.file, child};
+  for (const auto& child : node.element.select_nodes("*")) {
+    const MjcfNode config{node.file, child.node()};
     config.require_known();
-    const std::string key = child.attribute("key").value();
-    const std::string_view value = child.attribute("value").value();
+    const std::string key = config.element.attribute("key").value();
+    const std::string_view value = config.element.attribute("value").value();
     if (key == "flat") {
       plugin.flat = value == "true";
       if (!plugin.flat && value != "false") config.fail("value", "(allowed: true, false)");
@@ -41,10 +40,10 @@ void read_config(const MjcfNode& node, MjcfPlugin& plugin) {
 /// Returns the <instance> with that name. @throws InputError if there is none
 MjcfNode instance_of(const MjcfNode& node) {
   const char* name = node.element.attribute("instance").value();
-  for (const pugi::xml_node& extension : node.file.xml().root().children("extension")) {
-    for (const pugi::xml_node& plugin : extension.children("plugin")) {
-      const pugi::xml_node found = plugin.find_child_by_attribute("instance", "name", name);
-      if (found && plugin.attribute("plugin").value() == cable_plugin) return {node.file, found};
+  for (const auto& plugin : node.file.xml().root().select_nodes("extension/plugin")) {
+    const pugi::xml_node found = plugin.node().find_child_by_attribute("instance", "name", name);
+    if (found && plugin.node().attribute("plugin").value() == cable_plugin) {
+      return {node.file, found};
     }
   }
   node.fail("instance", fmt::format("no such instance of {} in <extension>", cable_plugin));

@@ -34,11 +34,9 @@ std::size_t sizes_of(Type type) {
     case Type::box:
     case Type::ellipsoid:
       return 3;
-    case Type::plane:
-    case Type::other:
-      break;
+    default:
+      return 0;
   }
-  return 0;
 }
 
 /// Reads half-sizes; the last `given` of them are optional, because fromto determines them.
@@ -123,11 +121,9 @@ double mjcf_volume(const MjcfGeom& geom) {
       return 8 * geom.size.prod();
     case Type::ellipsoid:
       return 4 * pi / 3 * geom.size.prod();
-    case Type::plane:
-    case Type::other:
-      break;
+    default:
+      return 0;
   }
-  return 0;
 }
 
 MjcfGeom read_mjcf_geom(const MjcfNode& node, const MjcfPose& at) {

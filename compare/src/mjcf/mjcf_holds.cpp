@@ -27,14 +27,11 @@ class HoldFinder {
   [[nodiscard]] std::vector<MjcfHold> find(bool constrained, std::vector<std::string>& notes) {
     add_first_body(notes);
     bool is_soft = false;
-    for (const pugi::xml_node& equality : xml_.root().children("equality")) {
-      for (const pugi::xml_node& constraint : equality.children()) {
-        if (!constrained) break;
-        if (constraint.type() != pugi::node_element) continue;
-        attributes_.refusals().attempt([&] {
-          is_soft = add({attributes_, constraint}) || is_soft;
-        });
-      }
+    for (const auto& constraint : xml_.root().select_nodes("equality/*")) {
+      if (!constrained) break;
+      attributes_.refusals().attempt([&] {
+        is_soft = add({attributes_, constraint.node()}) || is_soft;
+      });
     }
     if (is_soft) notes.emplace_back("soft constraints are treated as rigid grippers");
     attributes_.refusals().throw_if_any();

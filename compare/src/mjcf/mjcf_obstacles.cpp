@@ -21,36 +21,21 @@ std::set<std::string> excluded(const XmlFile& xml, const MjcfWorld& world, const
       return world.bodies[segment.body].name == name;
     });
   };
-  for (const pugi::xml_node& contact : xml.root().children("contact")) {
-    for (const pugi::xml_node& part : contact.children()) {
-      if (part.type() != pugi::node_element) continue;
-      if (std::string_view(part.name()) != "exclude") {
-        xml.fail(part, "in <contact> has no counterpart in a rod's scene (allowed: exclude)");
-      }
-      const std::string first = part.attribute("body1").value();
-      const std::string second = part.attribute("body2").value();
-      if (is_cable(first) != is_cable(second)) names.insert(is_cable(first) ? second : first);
+  for (const auto& found : xml.root().select_nodes("contact/*")) {
+    const pugi::xml_node part = found.node();
+    if (std::string_view(part.name()) != "exclude") {
+      xml.fail(part, "in <contact> has no counterpart in a rod's scene (allowed: exclude)");
     }
+    const std::string first = part.attribute("body1").value();
+    const std::string second = part.attribute("body2").value();
+    if (is_cable(first) != is_cable(second)) names.insert(is_cable(first) ? second : first);
   }
   return names;
 }
 
-/// Returns the radius of a sphere that contains the geom [m].
+/// Returns the radius of a sphere that contains the geom [m]; 0 for a plane.
 double reach_of(const MjcfGeom& geom) {
-  switch (geom.type) {
-    case Type::sphere:
-      return geom.size[0];
-    case Type::capsule:
-      return geom.size[0] + geom.size[1];
-    case Type::plane:
-      return 0;
-    case Type::cylinder:
-    case Type::box:
-    case Type::ellipsoid:
-    case Type::other:
-      break;
-  }
-  return geom.size.norm();
+  return geom.type == Type::capsule ? geom.size.sum() : geom.size.norm();
 }
 
 /// Returns the shape of a geom for a table [[obstacle]]; empty if no obstacle has such a shape.
@@ -70,12 +55,9 @@ std::string shape_text(const MjcfGeom& geom, const MjcfPose& pose) {
       return fmt::format("shape = \"box\"\npoint = {}\naxis = {}\nnormal = {}\nsize = {}\n", point,
                          toml_vector(pose.linear().col(0)), toml_vector(pose.linear().col(1)),
                          toml_vector(2 * geom.size));
-    case Type::cylinder:
-    case Type::ellipsoid:
-    case Type::other:
-      break;
+    default:
+      return "";
   }
-  return "";
 }
 
 }  // namespace
@@ -90,10 +72,7 @@ std::string mjcf_obstacles(const MjcfAttributes& attributes, const MjcfWorld& wo
   int neglected = 0;
   for (const MjcfBody& body : world.bodies) {
     if (body.moves || apart.contains(body.name)) continue;
-    const bool is_segment = std::ranges::any_of(chain.segments, [&](const MjcfSegment& segment) {
-      return &world.bodies[segment.body] == &body;
-    });
-    if (is_segment) continue;
+    if (chain.segment_of(static_cast<std::size_t>(&body - world.bodies.data()))) continue;
     for (const MjcfGeom& geom : body.geoms) {
       const bool collides =
           std::ranges::any_of(last.geoms, [&](const MjcfGeom& own) { return geom.collides(own); });

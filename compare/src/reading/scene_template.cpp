@@ -41,22 +41,20 @@ void place_value(const SceneField& field, const std::string& file, const Place& 
   place(*array);
 }
 
-/// Names that are mistaken for fields, and the paths that a message proposes instead.
-constexpr std::pair<std::string_view, std::string_view> short_field_names[] = {
-    {"E", "rod.material.youngs_modulus"},
-    {"youngs_modulus", "rod.material.youngs_modulus"},
-    {"rod.youngs_modulus", "rod.material.youngs_modulus"},
-    {"density", "rod.material.density"},
-    {"rod.density", "rod.material.density"},
-    {"length", "rod.length"},
-    {"diameter", "rod.diameter"},
-    {"material", "rod.material"},
-    {"EI", "rod.bending_stiffness"},
-    {"bending_stiffness", "rod.bending_stiffness"},
-    {"mass_per_length", "rod.mass_per_length"},
-    {"natural_curvature", "rod.natural_curvature"},
-    {"points", "force_model.points"},
-    {"law", "force_model.law"}};
+/// Returns the path that a key without its table means, or a material's key as one of the rod;
+/// empty for other fields.
+std::string meant_by(const std::string& field) {
+  const std::string given = field.starts_with("rod.") ? field.substr(4) : field;
+  const std::string key = given == "E"    ? "youngs_modulus"
+                          : given == "EI" ? "bending_stiffness"
+                                          : given;
+  for (const char* table : {"rod", "rod.material", "force_model"}) {
+    if (!std::ranges::binary_search(scene_table(table).names, key)) continue;
+    const std::string path = fmt::format("{}.{}", table, key);
+    return path == field ? "" : path;
+  }
+  return {};
+}
 
 class Overrider {
  public:
@@ -65,8 +63,8 @@ class Overrider {
       : root_(root), file_(file), materials_(materials), missing_(missing) {}
 
   void set(const SceneField& field) const {
-    for (const auto& [written, meant] : short_field_names) {
-      if (field.field == written) refuse(field.field, fmt::format("did you mean {}?", meant));
+    if (const std::string meant = meant_by(field.field); !meant.empty()) {
+      refuse(field.field, fmt::format("did you mean {}?", meant));
     }
     if (std::count(field.field.begin(), field.field.end(), '.') >= deepest_nesting) {
       refuse(field.field.substr(0, 40) + "...",

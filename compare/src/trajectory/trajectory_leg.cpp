@@ -12,19 +12,21 @@ namespace {
 /// Largest difference between the axes of great circles that count as one [-].
 constexpr double same_circle = 1e-6;
 
-/// Weights of Hermite's cubic at a share u of the time between two poses.
+/// Weights of Hermite's cubic between two poses, or of its time derivative.
 struct Hermite {
-  double to;                    ///< weight of the change of the value
-  double slope_from, slope_to;  ///< weights of the rates, multiplied by the time between
+  double start;               ///< weight of the value at the first pose
+  double change;              ///< weight of the change to the second pose
+  double rate_from, rate_to;  ///< weights of the rates at both poses
 };
 
-/// Returns the weights, or their derivatives.
-/// @param derivative  order of the derivative with respect to u
-Hermite hermite(double u, int derivative) {
+/// Returns the weights at a time. @param derivative  order of the derivative: 0, 1 or 2
+Hermite hermite(const TrajectoryLeg& leg, double time, int derivative) {
+  const double h = leg.to.time - leg.from.time;
+  const double u = (time - leg.from.time) / h;
   const double v = 1 - u;
-  if (derivative == 0) return {u * u * (1 + 2 * v), u * v * v, -u * u * v};
-  if (derivative == 1) return {6 * u * v, v * (1 - 3 * u), u * (3 * u - 2)};
-  return {6 * (v - u), 6 * u - 4, 6 * u - 2};
+  if (derivative == 0) return {1, u * u * (1 + 2 * v), h * u * v * v, -h * u * u * v};
+  if (derivative == 1) return {0, 6 * u * v / h, v * (1 - 3 * u), u * (3 * u - 2)};
+  return {0, 6 * (v - u) / (h * h), (6 * u - 4) / h, (6 * u - 2) / h};
 }
 
 /// Returns the factor that limits a speed to three times that of the slower side [-].
@@ -77,28 +79,20 @@ Eigen::Vector3d roll_of(const Pose& pose) {
 }  // namespace
 
 Eigen::Vector3d TrajectoryLeg::position(double time, int derivative) const {
-  const double h = to.time - from.time;
-  const Hermite at = hermite((time - from.time) / h, derivative);
-  const Eigen::Vector3d start = derivative == 0 ? from.position : Eigen::Vector3d::Zero().eval();
-  return (start + at.to * (to.position - from.position) + h * at.slope_from * velocity_from +
-          h * at.slope_to * velocity_to) /
-         std::pow(h, derivative);
+  const Hermite at = hermite(*this, time, derivative);
+  return at.start * from.position + at.change * (to.position - from.position) +
+         at.rate_from * velocity_from + at.rate_to * velocity_to;
 }
 
 double TrajectoryLeg::turned(double time, int derivative) const {
-  const double h = to.time - from.time;
-  const Hermite at = hermite((time - from.time) / h, derivative);
-  return (at.to * angle + h * (at.slope_from * rate_from + at.slope_to * rate_to)) /
-         std::pow(h, derivative);
+  const Hermite at = hermite(*this, time, derivative);
+  return at.change * angle + at.rate_from * rate_from + at.rate_to * rate_to;
 }
 
 double TrajectoryLeg::rolled(double time, int derivative) const {
-  const double h = to.time - from.time;
-  const Hermite at = hermite((time - from.time) / h, derivative);
-  const double start = derivative == 0 ? *from.roll : 0;
-  return (start + at.to * (*to.roll - *from.roll) +
-          h * (at.slope_from * roll_rate_from + at.slope_to * roll_rate_to)) /
-         std::pow(h, derivative);
+  const Hermite at = hermite(*this, time, derivative);
+  return at.start * *from.roll + at.change * (*to.roll - *from.roll) +
+         at.rate_from * roll_rate_from + at.rate_to * roll_rate_to;
 }
 
 TrajectoryLeg leg_after(const std::vector<Pose>& poses, std::size_t first) {
