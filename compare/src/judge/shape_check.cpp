@@ -67,19 +67,6 @@ long measured_points(const Scene& scene, const Eigen::Matrix3Xd& points) {
   return count;
 }
 
-std::optional<Eigen::Index> free_tip(const Scene& scene, const std::vector<double>& s) {
-  const auto is_free = [&](double at) {
-    return std::none_of(scene.grippers.begin(), scene.grippers.end(),
-                        [at](const Gripper& gripper) { return gripper.at == at; });
-  };
-  const double near = 1e-9 * scene.length;
-  if (is_free(scene.length) && s.back() >= scene.length - near) {
-    return static_cast<Eigen::Index>(s.size()) - 1;
-  }
-  if (is_free(0) && s.front() <= near) return 0;
-  return std::nullopt;
-}
-
 Deviation measured_deviation(const Scene& scene, const Alignment& alignment,
                              const Reference& reference, const Measured& measured,
                              double movement) {

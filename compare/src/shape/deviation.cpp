@@ -6,6 +6,8 @@
 #include <stdexcept>
 #include <vector>
 
+#include "shape/shape_measure.hpp"
+
 namespace dlo::compare {
 namespace {
 
@@ -43,18 +45,6 @@ double curvature_rms(const Shape& shape, const energy_model::Samples& samples) {
     length += share;
   }
   return length > 0 ? std::sqrt(sum / length) : 0;
-}
-
-/// Returns the index of the point at the end that no gripper holds; if both ends are free, that at
-/// arc length l.
-std::optional<Eigen::Index> free_end(const Scene& scene, const std::vector<double>& s) {
-  const auto held = [&](double at) {
-    return std::any_of(scene.grippers.begin(), scene.grippers.end(),
-                       [at](const Gripper& gripper) { return gripper.at == at; });
-  };
-  if (!held(scene.length)) return static_cast<Eigen::Index>(s.size()) - 1;
-  if (!held(0)) return 0;
-  return std::nullopt;
 }
 
 }  // namespace
@@ -108,9 +98,22 @@ std::optional<Eigen::Matrix3Xd> straight_rod(const Scene& scene, const std::vect
   return points;
 }
 
+std::optional<Eigen::Index> free_tip(const Scene& scene, const std::vector<double>& s) {
+  const auto is_free = [&](double at) {
+    return std::none_of(scene.grippers.begin(), scene.grippers.end(),
+                        [at](const Gripper& gripper) { return gripper.at == at; });
+  };
+  const double near = 1e-9 * scene.length;
+  if (is_free(scene.length) && s.back() >= scene.length - near) {
+    return static_cast<Eigen::Index>(s.size()) - 1;
+  }
+  if (is_free(0) && s.front() <= near) return 0;
+  return std::nullopt;
+}
+
 Deviation shape_deviation(const Scene& scene, const Shape& shape, const Reference& reference) {
   return deviation(shape, reference, straight_rod(scene, shape.arc_length),
-                   free_end(scene, shape.arc_length));
+                   free_tip(scene, shape.arc_length));
 }
 
 }  // namespace dlo::compare

@@ -1,10 +1,12 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <optional>
 #include <vector>
 
 #include "dlo/compare/alignment.hpp"
 #include "dlo/compare/deviation.hpp"
+#include "dlo/compare/scene.hpp"
 
 namespace dlo::compare {
 
@@ -47,6 +49,12 @@ struct WholeRod {
 /// at an end is compared with the outermost point.
 [[nodiscard]] WholeRod whole_of(const Measured& measured, const Alignment& alignment,
                                 const Reference& reference, double length);
+
+/// Returns the index of the point at the end of the rod that no gripper holds, std::nullopt if the
+/// points do not reach such an end; if they reach two, that at arc length l.
+/// @param s  arc lengths of the points [m]
+[[nodiscard]] std::optional<Eigen::Index> free_tip(const Scene& scene,
+                                                   const std::vector<double>& s);
 
 /// Returns the intervals of the rod between neighbouring points that are longer than 1e-3 l, with
 /// the interpolation error of each: the distance between the reference at the middle and the cubic
