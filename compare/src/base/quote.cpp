@@ -8,25 +8,6 @@
 #include "base/text.hpp"
 
 namespace dlo::compare {
-namespace {
-
-/// Quotes a word of arbitrary bytes for bash, in printable characters.
-std::string bash_word(const std::string& word) {
-  std::string quoted = "$'";
-  for (const char c : word) {
-    const auto code = static_cast<unsigned char>(c);
-    if (c == '\'' || c == '\\') {
-      quoted += '\\';
-      quoted += c;
-    } else {
-      quoted += code < 0x20 || code > 0x7e ? fmt::format("\\{:03o}", code) : std::string(1, c);
-    }
-  }
-  return quoted + "'";
-}
-
-}  // namespace
-
 std::string xml_text(const std::string& text) {
   std::string result = valid_utf8(text);
   for (char& c : result) {
@@ -108,9 +89,8 @@ std::string shell_word(const std::string& word) {
                                           "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ"
                                           "0123456789._/-+:@%,=") == std::string::npos;
   if (plain) return word;
-  if (display(word) != word) return bash_word(word);
   std::string quoted = "'";
-  for (const char c : word) quoted += c == '\'' ? std::string("'\\''") : std::string(1, c);
+  for (const char c : display(word)) quoted += c == '\'' ? std::string("'\\''") : std::string(1, c);
   return quoted + "'";
 }
 

@@ -29,8 +29,7 @@ namespace dlo::compare {
 /// to U+009F) are escaped.
 [[nodiscard]] std::string toml_string(const std::string& text);
 
-/// Returns a word for a shell, quoted if necessary; with bash's quotes if it contains control
-/// characters or invalid UTF-8.
+/// Returns a word for a shell, quoted if necessary; as display().
 [[nodiscard]] std::string shell_word(const std::string& word);
 
 /// Returns a short, printable part of a file for a message.

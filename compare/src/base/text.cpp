@@ -129,91 +129,50 @@ std::size_t toml_string_length(std::string_view rest) {
   return std::min(at, rest.size());
 }
 
-std::size_t json_string_length(std::string_view rest) {
-  std::size_t at = 1;
-  while (at < rest.size() && rest[at] != '"') at += rest[at] == '\\' ? 2 : 1;
-  return std::min(at + 1, rest.size());
-}
-
-/// Counts nesting levels, and names the line where there are too many.
-class NestingCounter {
- public:
-  explicit NestingCounter(const std::string& file) : file_(file) {}
-
-  void skip(std::string_view piece) { line_ += std::count(piece.begin(), piece.end(), '\n'); }
-
-  void bracket(char c) {
-    if (c == '[' || c == '{') {
-      if (++depth_ > deepest_nesting) too_deep("brackets within brackets");
-    } else if (c == ']' || c == '}') {
-      --depth_;
-    }
-  }
-
-  [[noreturn]] void fail(const std::string& problem) const {
-    throw InputError(fmt::format("{}:{}: {}", file_, line_, problem));
-  }
-
-  [[noreturn]] void too_deep(const char* what) const {
-    fail(fmt::format("{} (allowed: {} levels)", what, deepest_nesting));
-  }
-
- private:
-  const std::string& file_;
-  long line_ = 1;
-  int depth_ = 0;
-};
-
-/// Rejects an unquoted number that no double can represent, which a parser would read as zero or
-/// report unclearly.
-void require_double(std::string_view rest, const NestingCounter& counter) {
-  if (std::string_view("0123456789+-.").find(rest.front()) == std::string_view::npos) return;
+/// Returns the problem of an unquoted number that no double can represent, which a parser would
+/// read as zero or report unclearly; else an empty text.
+std::string number_problem(std::string_view rest) {
+  if (std::string_view("0123456789+-.").find(rest.front()) == std::string_view::npos) return "";
   std::string number(rest.substr(0, rest.find_first_of(" \t\r\n,]}#=")));
   number.erase(std::remove(number.begin(), number.end(), '_'), number.end());
   const std::string_view digits = std::string_view(number).substr(number.front() == '+' ? 1 : 0);
   const auto [value, length, error] = leading_number<double>(digits);
-  if (length == digits.size() && error == std::errc::result_out_of_range) {
-    counter.fail(beyond_double(number));
-  }
+  const bool beyond = length == digits.size() && error == std::errc::result_out_of_range;
+  return beyond ? beyond_double(number) : "";
 }
 
 }  // namespace
 
 void require_toml_limits(std::string_view text, const std::string& file) {
-  NestingCounter counter(file);
+  long line = 1;
+  int depth = 0;
   int dots = 0;
   bool begins = true;
+  const auto require = [&](bool holds, const char* problem) {
+    if (holds) return;
+    throw InputError(
+        fmt::format("{}:{}: {} (allowed: {} levels)", file, line, problem, deepest_nesting));
+  };
   for (std::size_t length = 1; !text.empty(); text.remove_prefix(length)) {
     const char c = text.front();
     length = 1;
-    if (begins) require_double(text, counter);
+    if (const std::string problem = begins ? number_problem(text) : ""; !problem.empty()) {
+      throw InputError(fmt::format("{}:{}: {}", file, line, problem));
+    }
     begins = std::string_view(" \t\r\n=,[]{}").find(c) != std::string_view::npos;
     if (c == '"' || c == '\'') {
       length = toml_string_length(text);
     } else if (c == '#') {
       length = std::min(text.find('\n'), text.size());
     } else if (c == '.') {
-      if (++dots >= deepest_nesting) counter.too_deep("a key of too many dotted parts");
+      require(++dots < deepest_nesting, "a key of too many dotted parts");
     } else if (std::string_view("\n=,[]{}").find(c) != std::string_view::npos) {
       dots = 0;
-      counter.bracket(c);
+      if (c == '[' || c == '{') ++depth;
+      if (c == ']' || c == '}') --depth;
+      require(depth <= deepest_nesting, "brackets within brackets");
     }
-    counter.skip(text.substr(0, length));
-  }
-}
-
-void require_json_limits(std::string_view text, const std::string& file, long most_values) {
-  NestingCounter counter(file);
-  long values = 0;
-  for (std::size_t length = 1; !text.empty(); text.remove_prefix(length)) {
-    const char c = text.front();
-    length = c == '"' ? json_string_length(text) : 1;
-    counter.bracket(length == 1 ? c : ' ');
-    if (c != ',' && c != '[' && c != '{') {
-      counter.skip(text.substr(0, length));
-    } else if (++values > most_values) {
-      throw InputError(fmt::format("{}: too many values (allowed: {})", file, most_values));
-    }
+    line += std::count(text.begin(), text.begin() + static_cast<std::ptrdiff_t>(length), '\n');
   }
 }
 

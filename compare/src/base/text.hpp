@@ -50,9 +50,4 @@ inline constexpr int deepest_nesting = 32;
 /// a key has more dotted parts, or a number is too large or too small for a double
 void require_toml_limits(std::string_view text, const std::string& file);
 
-/// Checks the limits of a JSON text.
-/// @throws InputError that names file and line if brackets are nested deeper than deepest_nesting,
-/// or the file if there are more than `most_values` values
-void require_json_limits(std::string_view text, const std::string& file, long most_values);
-
 }  // namespace dlo::compare

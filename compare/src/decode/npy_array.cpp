@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cstdint>
+#include <regex>
 #include <utility>
 
 #include "base/input_file.hpp"
@@ -15,8 +16,8 @@ namespace dlo::compare {
 namespace {
 
 /// Largest size of a header [bytes]; those of numpy are below 200 bytes, except for structured
-/// arrays.
-constexpr std::size_t longest_header = 10'000;
+/// arrays, which are not read. std::regex needs stack for each byte.
+constexpr std::size_t longest_header = 1000;
 
 /// Header of an array.
 struct Header {
@@ -26,77 +27,45 @@ struct Header {
   std::size_t begin = 0;  ///< start of the numbers
 };
 
-/// Reads the header of an array, a Python dictionary of three keys.
-class HeaderReader {
- public:
-  HeaderReader(std::string_view bytes, std::string name) : name_(std::move(name)) {
-    constexpr std::size_t before_length = 8;
-    const std::uint64_t version = natural_at(bytes, npy_magic.size(), 1).value_or(0);
-    const std::size_t width = version == 1 ? 2 : 4;
-    const std::optional<std::uint64_t> length = natural_at(bytes, before_length, width);
-    if (!bytes.starts_with(npy_magic) || version < 1 || version > 3 || !length) {
-      fail("not an array as NumPy saves it, of format 1, 2 or 3");
+/// Returns the value of a key of a header, a Python dictionary: the first group of the pattern.
+std::string value_in(const std::string& header, const char* key, const char* pattern,
+                     const std::string& name) {
+  std::smatch found;
+  const std::regex entry(fmt::format("'{}' *: *{}", key, pattern));
+  if (std::regex_search(header, found, entry)) return found[1];
+  throw InputError(fmt::format(
+      "{}: a header without a {} of plain numbers (allowed: as NumPy saves an array)", name, key));
+}
+
+Header read_header(std::string_view bytes, const std::string& name) {
+  constexpr std::size_t before_length = 8;
+  const std::uint64_t version = natural_at(bytes, npy_magic.size(), 1).value_or(0);
+  const std::size_t width = version == 1 ? 2 : 4;
+  const std::optional<std::uint64_t> length = natural_at(bytes, before_length, width);
+  if (!bytes.starts_with(npy_magic) || version < 1 || version > 3 || !length) {
+    throw InputError(name + ": not an array as NumPy saves it, of format 1, 2 or 3");
+  }
+  const std::size_t begin = before_length + width;
+  if (*length > longest_header || begin + *length > bytes.size()) {
+    throw InputError(fmt::format("{}: a header of {} bytes (allowed: up to {}, in the file)", name,
+                                 *length, longest_header));
+  }
+  const std::string text(bytes.substr(begin, *length));
+  Header header{.type = value_in(text, "descr", "'([^']*)'", name),
+                .by_columns = value_in(text, "fortran_order", "(True|False)", name) == "True",
+                .shape = {},
+                .begin = begin + *length};
+  const std::string shape = value_in(text, "shape", "\\(([0-9, ]*)\\)", name);
+  for (std::string_view rest = shape; !rest.empty();) {
+    const auto [size, digits, error] = leading_number<std::size_t>(rest);
+    if (error == std::errc::result_out_of_range) {
+      throw InputError(fmt::format("{}: a shape with {} in it", name, quoted_piece(rest)));
     }
-    header_.begin = before_length + width + *length;
-    if (*length > longest_header || header_.begin > bytes.size()) {
-      fail(fmt::format("a header of {} bytes (allowed: up to {}, in the file)", *length,
-                       longest_header));
-    }
-    text_ = bytes.substr(before_length + width, *length);
+    if (digits > 0) header.shape.push_back(size);
+    rest.remove_prefix(std::max<std::size_t>(digits, 1));
   }
-
-  [[nodiscard]] Header read() {
-    read_type(after("descr"));
-    const std::string_view order = after("fortran_order");
-    header_.by_columns = order.starts_with("True");
-    if (!header_.by_columns && !order.starts_with("False")) fail("a damaged header");
-    read_shape(after("shape"));
-    return header_;
-  }
-
- private:
-  [[noreturn]] void fail(const std::string& problem) const {
-    throw InputError(fmt::format("{}: {}", name_, problem));
-  }
-
-  /// Returns the text behind a key and its colon.
-  [[nodiscard]] std::string_view after(const std::string& key) const {
-    const std::size_t at = text_.find("'" + key + "'");
-    const std::size_t colon = at == std::string_view::npos ? at : text_.find(':', at);
-    const std::size_t value =
-        colon == std::string_view::npos ? colon : text_.find_first_not_of(' ', colon + 1);
-    if (value == std::string_view::npos) fail(fmt::format("a header without {}", key));
-    return text_.substr(value);
-  }
-
-  void read_type(std::string_view value) {
-    if (value.front() == '[') fail("a structured array (allowed: one of plain numbers)");
-    const std::size_t end = value.find('\'', 1);
-    if (value.front() != '\'' || end == std::string_view::npos) fail("a damaged header");
-    header_.type = value.substr(1, end - 1);
-  }
-
-  void read_shape(std::string_view value) {
-    const std::size_t end = value.find(')');
-    if (value.front() != '(' || end == std::string_view::npos) fail("a damaged header");
-    value = value.substr(1, end - 1);
-    while (!value.empty()) {
-      const std::size_t comma = std::min(value.find(','), value.size());
-      std::string_view part = value.substr(0, comma);
-      value.remove_prefix(std::min(comma + 1, value.size()));
-      part.remove_prefix(std::min(part.find_first_not_of(' '), part.size()));
-      part = part.substr(0, part.find_last_not_of(' ') + 1);
-      if (part.empty() && value.empty()) break;
-      const std::optional<std::size_t> size = as_number<std::size_t>(part);
-      if (!size) fail(fmt::format("a shape with {} in it", quoted_piece(part)));
-      header_.shape.push_back(*size);
-    }
-  }
-
-  std::string name_;
-  std::string_view text_;
-  Header header_;
-};
+  return header;
+}
 
 /// Returns the number format of a type; empty if it is not supported.
 std::optional<NumberFormat> format_of(std::string_view type) {
@@ -131,7 +100,7 @@ std::string too_large(const NpyArray& array) {
 
 NpyArray::NpyArray(std::string_view bytes, std::string where)
     : bytes_(bytes), where_(std::move(where)) {
-  Header header = HeaderReader(bytes, where_).read();
+  Header header = read_header(bytes, where_);
   format_ = format_of(header.type);
   type_ = std::move(header.type);
   by_columns_ = header.by_columns;

@@ -20,9 +20,22 @@ constexpr const char* json_allowed =
 json parsed(std::string_view text, const std::string& file) {
   // The limit allows for shapes written by dlo solve: five values per point, with several
   // equilibria one more.
-  require_json_limits(text, file, 30 * most_shape_points);
+  constexpr long most_values = 30 * most_shape_points;
+  long values = 0;
+  const auto check = [&](int depth, json::parse_event_t event, json& /*value*/) {
+    const bool begins =
+        event == json::parse_event_t::array_start || event == json::parse_event_t::object_start;
+    if (begins && depth >= deepest_nesting) {
+      throw InputError(
+          fmt::format("{}: brackets within brackets (allowed: {} levels)", file, deepest_nesting));
+    }
+    if ((begins || event == json::parse_event_t::value) && ++values > most_values) {
+      throw InputError(fmt::format("{}: too many values (allowed: {})", file, most_values));
+    }
+    return true;
+  };
   try {
-    return json::parse(text);
+    return json::parse(text, check);
   } catch (const json::parse_error& error) {
     const std::size_t at = std::min(error.byte, text.size());
     const auto line = 1 + std::count(text.begin(), text.begin() + static_cast<long>(at), '\n');

@@ -28,7 +28,7 @@ TEST(Quote, NoTextOfTomlSteersATerminal) {
 
 TEST(Quote, WordsOfAShellArePrintable) {
   EXPECT_EQ(shell_word("it's"), "'it'\\''s'");
-  EXPECT_EQ(shell_word("a\x1b[1m'\\\xff"), "$'a\\033[1m\\'\\\\\\377'");
+  EXPECT_EQ(shell_word("a\x1b[1m'\\\xff"), "'a?[1m'\\''\\\xef\xbf\xbd'");
 }
 
 }  // namespace
