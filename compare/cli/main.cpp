@@ -62,8 +62,9 @@ int main(int argc, char** argv) {
   keep_freed_memory();
   dlo::cli::reserve_standard_descriptors();
   dlo::compare::end_groups_at_signals();
-  // A write beyond the file size limit is reported as an error.
+  // Writes beyond the file size limit, or to a pipe that nobody reads, are errors.
   (void)std::signal(SIGXFSZ, SIG_IGN);
+  (void)std::signal(SIGPIPE, SIG_IGN);
   std::set_terminate(end_uncaught);
   try {
     const int status = dlo::cli::run_command({argv + 1, argv + argc});

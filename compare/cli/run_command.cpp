@@ -101,12 +101,16 @@ std::optional<double> whole_time_limit(const CLI::App& command) {
   return option->as<double>();
 }
 
-void build(CLI::App& app, std::optional<CommandTimeLimit>& limit) {
+/// Adds the command `chosen`; all commands if there is none of that name.
+void build(CLI::App& app, std::optional<CommandTimeLimit>& limit, const std::string& chosen) {
   app.require_subcommand(1);
   app.formatter(help_formatter());
   app.set_help_flag("-h,--help", "this help; with a command, its options");
   app.set_version_flag("--version", "dlo " DLO_VERSION, "the version");
-  for (const auto add : all_commands) add(app);
+  const auto* const own = std::ranges::find(all_commands, chosen, &NamedCommand::name);
+  for (const NamedCommand& command : all_commands) {
+    if (own == std::end(all_commands) || own == &command) command.add(app);
+  }
   app.footer(
       "Begin with:\n"
       "  dlo init cable.toml --length \"2 m\" --diameter \"6 mm\" --material silicone\n"
@@ -134,21 +138,14 @@ int run_command(std::vector<std::string> words) {
       "computes it from bending energy and gravity, and says how far others are from it.",
       "dlo");
   std::optional<CommandTimeLimit> limit;
-  build(app, limit);
-  if (words.empty()) {
-    write_standard_output(app.help());
-    return static_cast<int>(ExitStatus::good);
-  }
+  if (words.empty()) words.emplace_back("--help");
   if (words.front() == "help") {
     // "help solve" is equivalent to "solve --help".
     words.erase(words.begin());
     words.emplace_back("--help");
   }
-  if (words.front().starts_with('-')) {
-    require_known_option(app, words.front());
-  } else {
-    require_known_command(app, words.front());
-  }
+  build(app, limit, words.front());
+  require_known_word(app, words.front());
   require_values(words);
   std::reverse(words.begin(), words.end());  // CLI11 expects the reverse order
   try {
@@ -179,43 +176,38 @@ int run_command(std::vector<std::string> words, std::string& out, std::string& e
 }
 
 ExitStatus report_exception() {
+  const auto say_error = [](const std::exception& error, ExitStatus status) {
+    say("{}", error.what());
+    return status;
+  };
   try {
     throw;
   } catch (const compare::BrokenPipe&) {
     throw;
   } catch (const compare::OutputError& error) {
-    say("{}", error.what());
-    return ExitStatus::not_written;
+    return say_error(error, ExitStatus::not_written);
   } catch (const compare::ConvergenceError& error) {
-    say("{}", error.what());
-    return ExitStatus::not_converged;
+    return say_error(error, ExitStatus::not_converged);
   } catch (const compare::InputError& error) {
-    say("{}", error.what());
-    return ExitStatus::bad_input;
+    return say_error(error, ExitStatus::bad_input);
   } catch (const std::invalid_argument& error) {
     // The message of the model names the value that is out of range.
-    say("{}", error.what());
-    return ExitStatus::bad_input;
+    return say_error(error, ExitStatus::bad_input);
   } catch (const std::filesystem::filesystem_error& error) {
-    say("{}", error.what());
-    return ExitStatus::bad_input;
+    return say_error(error, ExitStatus::bad_input);
   } catch (const std::bad_alloc&) {
     write_standard_error("dlo: out of memory\n");
-    return ExitStatus::no_resources;
   } catch (const std::length_error&) {
     // A container was requested that exceeds its largest size.
     write_standard_error("dlo: out of memory\n");
-    return ExitStatus::no_resources;
   } catch (const std::system_error& error) {
     say("out of threads or memory ({})", error.what());
-    return ExitStatus::no_resources;
   } catch (const std::exception& error) {
     say("internal error: {}", error.what());
-    return ExitStatus::no_resources;
   } catch (...) {
     write_standard_error("dlo: internal error\n");
-    return ExitStatus::no_resources;
   }
+  return ExitStatus::no_resources;
 }
 
 }  // namespace dlo::cli

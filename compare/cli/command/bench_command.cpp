@@ -38,7 +38,8 @@ void run(const BenchOptions& options) {
     return compare::run_benchmark(scenes, benchmark,
                                   [&](const std::string& what) { bar.stage(what); });
   }();
-  write_output(options.output, benchmark_document(report), [&] { return benchmark_csv(report); });
+  write_output(options.output, benchmark_document(report),
+               {{"csv", [&] { return benchmark_csv(report); }}});
   options.plot.draw([&] {
     compare::PictureRow fronts;
     for (const compare::SceneBenchmark& scene : report.scenes) {

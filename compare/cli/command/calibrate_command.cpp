@@ -22,7 +22,6 @@
 #include "option/terminal.hpp"
 #include "picture/figures.hpp"
 #include "series/series_output.hpp"
-#include "toml/quantity.hpp"
 #include "trajectory/read_trajectory.hpp"
 
 namespace dlo::cli {
@@ -38,20 +37,10 @@ struct ChainLayout {
 struct CalibrateOptions {
   std::vector<std::string> scenes;
   std::vector<std::string> shapes;
-  bool density = false;
-  bool torsional_stiffness = false;
-  std::string noise;
-  int natural_curvature_terms = 0;
+  compare::MaterialFitOptions fit;
   std::vector<std::string> motions;
   std::string segments;  // a number, or the name of a file
-  std::string clamp_angles;
-  std::string clamp_positions;
-  std::string clamp_rolls;
-  bool same_clamps = false;
-  std::string clamp_scatter;
-  std::string camera_tilt;
-  bool predict = false;
-  std::string chosen;  // empty: the default of calibrate()
+  std::string chosen;    // empty: the default of calibrate()
   std::vector<std::string> holdouts;
   std::optional<double> target;
   ShapeOptions shape_options;
@@ -63,19 +52,6 @@ struct CalibrateOptions {
   [[nodiscard]] ChainLayout chain_layout() const;
   [[nodiscard]] compare::MaterialFitOptions material_options() const;
 };
-
-/// Reads the quantity > 0 of an option, if it is given.
-std::optional<double> quantity_of(const char* option, const std::string& text,
-                                  compare::Dimension dimension) {
-  if (text.empty()) return std::nullopt;
-  try {
-    const double value = compare::parse_quantity(text, dimension);
-    if (value > 0) return value;
-  } catch (const compare::InputError& error) {
-    throw compare::InputError(fmt::format("{} = {}: {}", option, text, error.what()));
-  }
-  throw compare::InputError(fmt::format("{} = {}: out of range (allowed: > 0)", option, text));
-}
 
 bool is_number(const std::string& text) {
   return !text.empty() && text.find_first_not_of("+-0123456789") == std::string::npos;
@@ -96,29 +72,16 @@ ChainLayout CalibrateOptions::chain_layout() const {
 
 compare::MaterialFitOptions CalibrateOptions::material_options() const {
   constexpr int profile_points = 41;
-  using compare::Dimension;
   const ChainLayout chain = chain_layout();
-  return {.pose = shape_options.pose(),
-          .arc_lengths = shape_options.arc_lengths(),
-          .density = density,
-          .torsional_stiffness = torsional_stiffness,
-          .natural_curvature_terms = natural_curvature_terms,
-          .direction_tolerance =
-              quantity_of("--clamp-angles", clamp_angles, Dimension::angle).value_or(0),
-          .position_tolerance =
-              quantity_of("--clamp-positions", clamp_positions, Dimension::length).value_or(0),
-          .roll_tolerance = quantity_of("--clamp-rolls", clamp_rolls, Dimension::angle).value_or(0),
-          .shared_clamps = same_clamps,
-          .direction_scatter =
-              quantity_of("--clamp-scatter", clamp_scatter, Dimension::angle).value_or(0),
-          .camera_tilt = quantity_of("--camera-tilt", camera_tilt, Dimension::angle).value_or(0),
-          .predict = predict,
-          .choose_options = chosen.empty() ? std::nullopt : std::optional(chosen == "auto"),
-          .chain_segments = chain.segments,
-          .chain_segment_lengths = chain.segment_lengths,
-          .profile_points = plot.draws() ? profile_points : 0,
-          .noise = quantity_of("--noise", noise, Dimension::length),
-          .solve = overrides.solve()};
+  compare::MaterialFitOptions options = fit;
+  options.pose = shape_options.pose();
+  options.arc_lengths = shape_options.arc_lengths();
+  if (!chosen.empty()) options.choose_options = chosen == "auto";
+  options.chain_segments = chain.segments;
+  options.chain_segment_lengths = chain.segment_lengths;
+  options.profile_points = plot.draws() ? profile_points : 0;
+  options.solve = overrides.solve();
+  return options;
 }
 
 std::vector<compare::Scene> load_all(const std::vector<std::string>& paths,
@@ -168,11 +131,9 @@ void run_material(const CalibrateOptions& options, bool format_is_given) {
   const compare::Calibration found = with_progress("calibrate", [&](const auto& /*unknown*/) {
     return compare::calibrate(std::move(scenes), shapes, options.material_options(), held_out);
   });
+  const compare::Document document = material_document(found);
   write_calibration(options.output, format_is_given,
-                    Formats{{"text", [&] { return material_text(found); }},
-                            {"json", [&] { return json_text(material_json(found)); }},
-                            {"csv", [&] { return material_csv(found); }},
-                            {"toml", [&] { return material_toml(found); }}});
+                    formats_of(document, {{"toml", [&] { return material_toml(found); }}}));
   options.plot.draw([&] { return compare::fit_picture(found.scenes, found.fit); });
 }
 
@@ -198,9 +159,7 @@ void run_chains(const CalibrateOptions& options, bool format_is_given) {
       .json = {{"chains", chains_json(chains)}},
       .columns = {
           {"chains/#/joints", "at_m,joint_stiffness_Nm_per_rad,binormal_stiffness_Nm_per_rad"}}};
-  write_calibration(options.output, format_is_given,
-                    Formats{{"text", [&] { return document.text(); }},
-                            {"json", [&] { return json_text(document.json); }}});
+  write_calibration(options.output, format_is_given, formats_of(document));
 }
 
 void run_motion(const CalibrateOptions& options, bool format_is_given) {
@@ -220,9 +179,7 @@ void run_motion(const CalibrateOptions& options, bool format_is_given) {
                           [&bar](const std::string& what) { bar.stage(what); });
   const compare::Document document = motion_fit_document(found, scene);
   write_calibration(options.output, format_is_given,
-                    Formats{{"text", [&] { return document.text(); }},
-                            {"json", [&] { return json_text(document.json); }},
-                            {"toml", [&] { return motion_toml(found, scene); }}});
+                    formats_of(document, {{"toml", [&] { return motion_toml(found, scene); }}}));
   if (!found.not_identified.empty()) end_with(ExitStatus::not_converged);
 }
 
@@ -240,12 +197,10 @@ void run_force_model(const CalibrateOptions& options, bool points_are_given, boo
     fit_options.progress = progress;
     return compare::fit_force_model(scenes, holdouts, fit_options);
   });
-  write_calibration(
-      options.output, format_is_given,
-      Formats{{"text", [&] { return force_model_text(fit, options.target.has_value()); }},
-              {"json", [&] { return json_text(force_model_json(fit)); }},
-              {"csv", [&] { return force_model_csv(fit); }},
-              {"toml", [&] { return force_model_toml(fit); }}});
+  const compare::Document document = force_model_document(fit, options.target.has_value());
+  write_calibration(options.output, format_is_given,
+                    formats_of(document, {{"csv", [&] { return force_model_csv(fit); }},
+                                          {"toml", [&] { return force_model_toml(fit); }}}));
   // The default target was not requested by the user.
   if (!fit.reached() && options.target) end_with(ExitStatus::outside_tolerance);
 }
@@ -254,11 +209,12 @@ void prepare(Command& command) {
   const auto options = std::make_shared<CalibrateOptions>();
   CalibrateOptions& o = *options;
   command.bind("SCENE", o.scenes, "--holdout", o.holdouts, "--target", o.target, "--shape",
-               o.shapes, "--density", o.density, "--torsional-stiffness", o.torsional_stiffness,
-               "--noise", o.noise, "--natural-curvature", o.natural_curvature_terms,
-               "--clamp-angles", o.clamp_angles, "--clamp-positions", o.clamp_positions,
-               "--clamp-rolls", o.clamp_rolls, "--same-clamps", o.same_clamps, "--clamp-scatter",
-               o.clamp_scatter, "--camera-tilt", o.camera_tilt, "--predict", o.predict, "--options",
+               o.shapes, "--density", o.fit.density, "--torsional-stiffness",
+               o.fit.torsional_stiffness, "--noise", o.fit.noise, "--natural-curvature",
+               o.fit.natural_curvature_terms, "--clamp-angles", o.fit.direction_tolerance,
+               "--clamp-positions", o.fit.position_tolerance, "--clamp-rolls", o.fit.roll_tolerance,
+               "--same-clamps", o.fit.shared_clamps, "--clamp-scatter", o.fit.direction_scatter,
+               "--camera-tilt", o.fit.camera_tilt, "--predict", o.fit.predict, "--options",
                o.chosen, "--motion", o.motions);
   command.add("--segments", o.segments)->check(check_segments);
   command.bind(o.plot, o.shape_options, o.overrides, o.output);

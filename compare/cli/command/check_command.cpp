@@ -45,18 +45,11 @@ struct CheckOptions {
   std::string report;
 };
 
-compare::Picture picture_of(const compare::CheckResult& report) {
-  return compare::check_picture(report.scene, report.check, report.tolerance.allowed_m);
-}
-
 /// Writes the page of --report.
-template <typename Result>
-void write_page(const CheckOptions& options, const Result& result,
-                const std::function<compare::Picture()>& picture, const std::string& text) {
+void write_page(const CheckOptions& options, compare::PageResult page,
+                const std::function<compare::Picture()>& picture) {
   if (options.report.empty()) return;
-  compare::PageResult page = compare::page_result(result);
   page.pictures = page_pictures(picture(), "check", "--report " + options.report);
-  page.details = text;
   compare::write_file(options.report, compare::page_html({page}, "dlo check", DLO_VERSION));
 }
 
@@ -79,14 +72,15 @@ void run(const CheckOptions& options) {
       verdict_word(compare::to_string(result.judgement.verdict), result.passes(),
                    options.output.file)};
   if (options.output.format == "csv") warn_of_friction(scene);
-  write_output(options.output,
-               Formats{{"text", [&] { return shape_check_text(page); }},
-                       {"json", [&] { return json_text(shape_check_json(result)); }},
-                       {"csv", [&] { return shape_check_csv(result); }},
-                       {"markdown", [&] { return shape_check_markdown(result); }}});
-  const auto picture = [&] { return picture_of(result); };
+  write_output(options.output, shape_check_document(page),
+               {{"markdown", [&] { return shape_check_markdown(result); }}});
+  const auto picture = [&] {
+    return compare::check_picture(scene, result.check, result.tolerance.allowed_m);
+  };
   options.plot.draw(picture);
-  write_page(options, result, picture, shape_check_text({result, page.unit_hint}));
+  write_page(options,
+             {scene.name, result.passes(), shape_check_document({result, page.unit_hint}).text()},
+             picture);
   if (options.tolerance.allowed && !result.passes()) end_with(ExitStatus::outside_tolerance);
 }
 
@@ -107,13 +101,10 @@ void run_motion(const CheckOptions& options) {
   });
   const std::string verdict =
       verdict_word(result.passes ? "pass" : "fail", result.passes, options.output.file);
-  const compare::Document document = motion_check_document(result);
-  write_output(options.output, Formats{{"text", [&] { return motion_check_text(result, verdict); }},
-                                       {"json", [&] { return json_text(document.json); }},
-                                       {"csv", [&] { return document.csv(); }}});
+  write_output(options.output, motion_check_document(result, verdict));
   const auto picture = [&] { return compare::motion_check_picture(result); };
   options.plot.draw(picture);
-  write_page(options, result, picture, motion_check_text(result));
+  write_page(options, {scene.name, result.passes, motion_check_document(result).text()}, picture);
   if (options.tolerance.allowed && !result.passes) end_with(ExitStatus::outside_tolerance);
 }
 

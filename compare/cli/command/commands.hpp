@@ -1,6 +1,7 @@
 #pragma once
 
 #include <CLI/CLI.hpp>
+#include <string_view>
 
 namespace dlo::cli {
 
@@ -23,11 +24,21 @@ void add_modes_command(CLI::App& app);
 void add_suite_command(CLI::App& app);
 void add_track_command(CLI::App& app);
 
+/// A command and the function that adds it.
+struct NamedCommand {
+  std::string_view name;
+  void (*add)(CLI::App&);
+};
+
 /// All commands, in the order of the help.
-inline constexpr void (*all_commands[])(CLI::App&) = {
-    add_init_command,  add_materials_command, add_solve_command,     add_scene_command,
-    add_check_command, add_suite_command,     add_calibrate_command, add_compare_command,
-    add_paper_command, add_bench_command,     add_stability_command, add_track_command,
-    add_modes_command, add_sweep_command,     add_regress_command};
+inline constexpr NamedCommand all_commands[] = {
+    {"init", add_init_command},           {"materials", add_materials_command},
+    {"solve", add_solve_command},         {"scene", add_scene_command},
+    {"check", add_check_command},         {"suite", add_suite_command},
+    {"calibrate", add_calibrate_command}, {"compare", add_compare_command},
+    {"paper", add_paper_command},         {"bench", add_bench_command},
+    {"stability", add_stability_command}, {"track", add_track_command},
+    {"modes", add_modes_command},         {"sweep", add_sweep_command},
+    {"regress", add_regress_command}};
 
 }  // namespace dlo::cli

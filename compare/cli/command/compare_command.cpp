@@ -52,10 +52,10 @@ void write_page(const std::string& file, const std::vector<compare::Scene>& scen
   if (file.empty()) return;
   std::vector<compare::PageResult> results;
   for (std::size_t i = 0; i < scenes.size(); ++i) {
-    compare::PageResult& page = results.emplace_back(compare::page_result(comparisons[i]));
-    page.pictures = page_pictures({{comparison_row(scenes[i], comparisons[i])}},
-                                  fmt::format("scene-{}", i + 1), "--report " + file);
-    page.details = comparison_text(comparisons[i]);
+    results.push_back({scenes[i].name, within_limit(comparisons[i]),
+                       comparison_text(comparisons[i]),
+                       page_pictures({{comparison_row(scenes[i], comparisons[i])}},
+                                     fmt::format("scene-{}", i + 1), "--report " + file)});
   }
   compare::write_file(file, compare::page_html(results, "dlo compare", DLO_VERSION));
 }

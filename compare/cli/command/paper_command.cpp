@@ -21,7 +21,7 @@ void run(const OutputOptions& options) {
     moving = compare::moving_report();
   }
   const compare::Document paper = paper_document(report, moving);
-  write_output(options, paper, [&] { return paper_csv(paper); });
+  write_output(options, paper, {{"csv", [&] { return paper_csv(paper); }}});
 }
 
 }  // namespace

@@ -27,7 +27,6 @@ using compare::StabilityResult;
 struct StabilityOptions {
   std::string scene;
   std::string map;
-  std::vector<std::string> steppers;
   compare::StabilityOptions cases;
   compare::StabilityMapOptions grid;
   int threads = 0;
@@ -55,17 +54,12 @@ void run_map(StabilityOptions options) {
     options.grid.progress = progress;
     return compare::stability_map(scene, options.grid);
   });
-  write_output(options.output, stability_map_document(map), [&] { return stability_map_csv(map); });
+  write_output(options.output, stability_map_document(map),
+               {{"csv", [&] { return stability_map_csv(map); }}});
   options.plot.draw([&] { return compare::Picture{{{{compare::map_figure(map)}}}}; });
 }
 
 void run_cases(StabilityOptions options) {
-  if (!options.steppers.empty()) {
-    options.cases.steppers.clear();
-    for (const std::string& name : options.steppers) {
-      options.cases.steppers.push_back(compare::from_name<compare::Stepper>(name));
-    }
-  }
   options.cases.threads = options.threads;
   const auto results = with_progress("hard cases", [&](const auto& progress) {
     options.cases.progress = progress;
@@ -87,7 +81,7 @@ void add_stability_command(CLI::App& app) {
       },
       [](Command& command, StabilityOptions& o) {
         command.bind("SCENE", o.scene, "--map", o.map, "--threads", o.threads, "--case",
-                     o.cases.name_contains, "--stepper", o.steppers, "--max-steps",
+                     o.cases.name_contains, "--stepper", o.cases.steppers, "--max-steps",
                      o.cases.max_steps, "--max-steps-auto", o.cases.max_steps_auto,
                      "--steps-at-rest", o.cases.steps_at_rest, "--columns", o.grid.columns,
                      "--rows", o.grid.rows, "--map-steps", o.grid.steps, o.output, o.plot);

@@ -7,6 +7,7 @@
 #include <system_error>
 #include <utility>
 
+#include "base/input_file.hpp"
 #include "base/quote.hpp"
 #include "base/text.hpp"
 #include "command/commands.hpp"
@@ -44,9 +45,11 @@ std::filesystem::path file_of(const std::string& target, std::string& name) {
 
 std::string next_steps(const compare::Scene& scene, const std::string& file) {
   std::string out;
-  append(out, "{} written: {:g} m long, {:g} mm thick, E = {:g} MPa, density {:g} kg/m^3\n",
+  const bool is_stiff = scene.material.youngs_modulus >= 1e9;
+  append(out, "{} written: {:g} m long, {:g} mm thick, E = {:g} {}, density {:g} kg/m^3\n",
          compare::display(file), scene.length, scene.diameter * 1e3,
-         scene.material.youngs_modulus * 1e-6, scene.material.density);
+         scene.material.youngs_modulus / (is_stiff ? 1e9 : 1e6), is_stiff ? "GPa" : "MPa",
+         scene.material.density);
   append(out, "  weight {:.4g} N, EI = {:.4g} N m^2, Gamma = w l^3 / (EI) = {:.4g}\n",
          scene.mass() * scene.gravity.norm(), scene.bending_stiffness(), scene.gamma());
   append(out,
@@ -94,9 +97,8 @@ void run(const InitOptions& given) {
     throw compare::InputError(
         fmt::format("{}: exists (allowed: another name, or --force to replace it)", file));
   }
-  std::vector<std::string> inputs;
-  if (!options.materials.empty()) inputs.push_back(options.materials);
-  check_output("init:", file, inputs);
+  check_output("init:", file);
+  compare::declare_output(file, "init: " + file);
   const std::vector<compare::Material> known =
       options.materials.empty() ? compare::materials() : compare::load_materials(options.materials);
   const std::string text = text_of(options.choices, known);

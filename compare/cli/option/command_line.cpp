@@ -4,7 +4,10 @@
 #include <toml++/toml.h>
 
 #include <algorithm>
+#include <cmath>
+#include <functional>
 #include <limits>
+#include <map>
 #include <sstream>
 #include <stdexcept>
 
@@ -50,6 +53,38 @@ Json json_of(const toml::node& node) {
   return result;
 }
 
+/// Returns a check that replaces the text of a number by its digits.
+/// @param read  may throw compare::InputError;  @param allowed  numbers for which `holds`, in words
+CLI::Validator number_check(std::function<double(const std::string&)> read,
+                            std::function<bool(double)> holds, std::string allowed) {
+  return {[read = std::move(read), holds = std::move(holds),
+           allowed = std::move(allowed)](std::string& text) {
+            std::string problem = "out of range";
+            try {
+              const double value = read(text);
+              if (holds(value)) {
+                text = fmt::format("{:.17g}", value);
+                return std::string();
+              }
+            } catch (const compare::InputError& error) {
+              problem = error.what();
+            }
+            return fmt::format("{}: {} (allowed: {})", text, problem, allowed);
+          },
+          ""};
+}
+
+/// Reads a quantity with a unit of its dimension. @param plain  whether a number in SI units will
+/// do
+double read_quantity(const std::string& text, compare::Dimension dimension, bool plain) {
+  try {
+    if (plain) return compare::parse_quantity(text, compare::Dimension::number);
+  } catch (const compare::InputError&) {
+    return compare::parse_quantity(text, dimension);
+  }
+  return compare::parse_quantity(text, dimension);
+}
+
 /// Checks a number's range. @return the range in words
 std::string add_range(CLI::Option& option, const Json& range, bool is_integer) {
   const double low = range.front();
@@ -61,8 +96,43 @@ std::string add_range(CLI::Option& option, const Json& range, bool is_integer) {
     option.check(CLI::Range(first, last).description(""));
     return fmt::format("{} to {}", first, last);
   }
-  option.check(number_between(low, high));
+  option.transform(number_check(
+      [](const std::string& text) {
+        return read_quantity(text, compare::Dimension::number, false);
+      },
+      [low, high](double value) { return value >= low && value <= high; },
+      fmt::format("{:g} to {:g}", low, high)));
   return range.size() > 1 ? fmt::format("{:g} to {:g}", low, high) : fmt::format(">= {:g}", low);
+}
+
+/// Reads a share of the rod's length, or one up to `most`.
+void add_share(CLI::Option& option, const Json& most) {
+  if (most.is_string()) {
+    option.transform(number_check(
+        share_from, [](double share) { return share > 0 && share < 1; },
+        "a share of the length such as 0.1% or 0.001, > 0, < 1"));
+    return;
+  }
+  const double high = most;
+  option.transform(number_check(
+      share_from, [high](double share) { return share >= 0 && share <= high; },
+      fmt::format("a share such as 1% or 0.01, 0 to {:g}", high)));
+}
+
+/// Reads a quantity > 0, or from 0 to below a limit.
+void add_quantity(CLI::Option& option, const Json& row) {
+  const auto dimension = compare::dimension_named(row.at("quantity").get<std::string>()).value();
+  const double below = row.value("below", std::numeric_limits<double>::infinity());
+  const bool limited = std::isfinite(below);
+  option.type_name("VALUE");
+  option.transform(number_check(
+      [dimension, plain = row.value("plain", false)](const std::string& text) {
+        return read_quantity(text, dimension, plain);
+      },
+      [below, limited](double value) {
+        return (limited ? value >= 0 : value > 0) && value < below;
+      },
+      limited ? fmt::format("0 <= value < {}", below) : "> 0"));
 }
 
 std::string refuse_empty(std::string& text) {
@@ -136,16 +206,21 @@ class HelpFormatter : public CLI::Formatter {
   }
 };
 
+std::vector<std::string> option_names(const CLI::App& app) {
+  std::vector<std::string> names;
+  for (const CLI::Option* known : options_of(app)) {
+    for (std::string& name : names_of(*known)) names.push_back(std::move(name));
+  }
+  return names;
+}
+
 /// Returns a message for words that CLI11 did not expect: an unknown option such as --modle, or an
 /// additional argument.
 std::string unexpected(const CLI::App& command, const std::vector<std::string>& words) {
   const auto option = std::find_if(words.begin(), words.end(),
                                    [](const std::string& word) { return word.starts_with('-'); });
   const std::string& word = option != words.end() ? *option : words.front();
-  std::vector<std::string> names;
-  for (const CLI::Option* known : options_of(command)) {
-    for (std::string& name : names_of(*known)) names.push_back(std::move(name));
-  }
+  const std::vector<std::string> names = option_names(command);
   const std::string written = word.substr(0, word.find('='));
   for (const CLI::Option* known : options_of(command)) {
     const std::string choices = known->get_type_name();
@@ -167,14 +242,24 @@ std::string unexpected(const CLI::App& command, const std::vector<std::string>& 
 
 }  // namespace
 
-const Json& option_table() {
-  static const Json table = json_of(toml::parse(compare::builtin::options_toml));
-  return table;
+const Json& option_table(const std::string& name) {
+  static std::map<std::string, Json, std::less<>> tables;
+  const auto known = tables.find(name);
+  if (known != tables.end()) return known->second;
+  // Only this table is parsed. It ends before the next one, but includes its arrays of tables.
+  const std::string_view text = compare::builtin::options_toml;
+  const std::size_t begin = text.find(fmt::format("\n[{}]\n", name));
+  std::size_t end = begin;
+  do {
+    end = std::min(text.find("\n[", end + 1), text.size());
+  } while (text.substr(end).starts_with(fmt::format("\n[[{}.", name)));
+  const toml::table parsed = toml::parse(text.substr(begin, end - begin));
+  return tables.emplace(name, json_of(*parsed.get(name))).first->second;
 }
 
 std::vector<std::string> expanded(const std::string& text) {
   std::vector<std::string> words;
-  const Json& groups = option_table().at("groups");
+  const Json& groups = option_table("groups");
   std::istringstream parts(text);
   for (std::string word; parts >> word;) {
     const std::vector<std::string> more =
@@ -182,20 +267,6 @@ std::vector<std::string> expanded(const std::string& text) {
     words.insert(words.end(), more.begin(), more.end());
   }
   return words;
-}
-
-CLI::Validator number_between(double low, double high) {
-  const auto check = [low, high](std::string& text) {
-    std::string problem = "out of range";
-    try {
-      const double value = compare::parse_quantity(text, compare::Dimension::number);
-      if (value >= low && value <= high) return std::string();
-    } catch (const compare::InputError& error) {
-      problem = error.what();
-    }
-    return fmt::format("{}: {} (allowed: {:g} to {:g})", text, problem, low, high);
-  };
-  return {check, ""};
 }
 
 void require_values(const std::vector<std::string>& words) {
@@ -209,28 +280,17 @@ void require_values(const std::vector<std::string>& words) {
 }
 
 Command::Command(CLI::App& app, const std::string& name)
-    : app_(*app.add_subcommand(name, option_table().at(name).at("words"))),
-      table_(option_table().at(name)),
+    : app_(*app.add_subcommand(name, option_table(name).at("words"))),
+      table_(option_table(name)),
       used_(expanded(table_.value("uses", ""))) {
   app_.group(table_.at("group"));
   app_.footer(table_.at("footer").get<std::string>());
 }
 
-CLI::Option* Command::add_function(const std::string& name,
-                                   const std::function<void(const std::string&)>& set,
-                                   const Names& choices, const std::string& meanings,
-                                   const std::string& usual) {
-  const Json* const row = find(name);
-  if (row == nullptr) return nullptr;
-  CLI::Option* const option = app_.add_option_function<std::string>(row->at("name"), set);
-  option->default_str(usual);
-  return describe(option, *row, false, row->value("choices", choices), meanings);
-}
-
 const Json* Command::find(const std::string& name) const {
   const Json* const own = find_row(table_, name);
   if (own != nullptr || std::ranges::find(used_, name) == used_.end()) return own;
-  return find_row(option_table().at("common"), name);
+  return find_row(option_table("common"), name);
 }
 
 CLI::Option* Command::describe(CLI::Option* option, const Json& row, bool is_integer,
@@ -250,10 +310,8 @@ CLI::Option* Command::describe(CLI::Option* option, const Json& row, bool is_int
     option->type_name(fmt::format("{{{}}}", fmt::join(choices, ",")));
   }
   if (row.contains("type")) option->type_name(row.at("type").get<std::string>());
-  if (row.contains("share")) {
-    const Json& most = row.at("share");
-    option->transform(most.is_string() ? share_of_length() : share_up_to(most));
-  }
+  if (row.contains("share")) add_share(*option, row.at("share"));
+  if (row.contains("quantity")) add_quantity(*option, row);
   if (row.value("each", false)) option->allow_extra_args(false);
   if (row.contains("delimiter")) option->delimiter(row.at("delimiter").get<std::string>().front());
   if (row.contains("group")) option->group(row.at("group"));
@@ -306,25 +364,20 @@ std::vector<const CLI::Option*> options_of(const CLI::App& app) {
 
 std::shared_ptr<CLI::FormatterBase> help_formatter() { return std::make_shared<HelpFormatter>(); }
 
-void require_known_command(const CLI::App& app, const std::string& written) {
-  std::vector<std::string> names;
-  for (const CLI::App* command : commands_of(app)) names.push_back(command->get_name());
-  if (std::find(names.begin(), names.end(), written) != names.end()) return;
-  throw compare::InputError(
-      fmt::format("unknown command {}{} (allowed: {}; dlo without arguments describes them)",
-                  written, compare::did_you_mean(written, names), fmt::join(names, ", ")));
-}
-
-void require_known_option(const CLI::App& app, const std::string& written) {
-  std::vector<std::string> names;
-  for (const CLI::Option* known : options_of(app)) {
-    for (std::string& name : names_of(*known)) names.push_back(std::move(name));
-  }
+void require_known_word(const CLI::App& app, const std::string& written) {
   const std::string name = written.substr(0, written.find('='));
+  const bool is_option = name.starts_with('-');
+  std::vector<std::string> names;
+  if (is_option) {
+    names = option_names(app);
+  } else {
+    for (const CLI::App* command : commands_of(app)) names.push_back(command->get_name());
+  }
   if (std::find(names.begin(), names.end(), name) != names.end()) return;
-  throw compare::InputError(fmt::format("unknown option {}{} (allowed without a command: {})", name,
-                                        compare::did_you_mean(name, names),
-                                        fmt::join(names, ", ")));
+  throw compare::InputError(fmt::format(
+      "unknown {} {}{} (allowed{}: {}{})", is_option ? "option" : "command", name,
+      compare::did_you_mean(name, names), is_option ? " without a command" : "",
+      fmt::join(names, ", "), is_option ? "" : "; dlo without arguments describes them"));
 }
 
 std::string parse_message(const CLI::App& app, const CLI::ParseError& error) {

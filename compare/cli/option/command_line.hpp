@@ -19,53 +19,76 @@ extern const std::string_view options_toml;  ///< generated from options.toml
 
 namespace dlo::cli {
 
-/// Returns the commands and their options, as options.toml describes them.
-[[nodiscard]] const compare::Json& option_table();
+/// Returns a table of options.toml: a command, "common" or "groups".
+[[nodiscard]] const compare::Json& option_table(const std::string& name);
 
 /// Returns the words of a text of the table; each name of several options is replaced by them.
 [[nodiscard]] std::vector<std::string> expanded(const std::string& text);
-
-/// Returns a check for numbers in [low, high]. NaN and infinity are refused.
-[[nodiscard]] CLI::Validator number_between(double low, double high);
 
 /// Refuses options that end with "=", because CLI11 would take the next word as their value.
 /// @throws compare::InputError
 void require_values(const std::vector<std::string>& words);
 
+/// Type of the values of an option that is bound to a variable of type Value.
+template <typename Value>
+struct ElementOf {
+  using type = Value;
+};
+template <typename Value>
+struct ElementOf<std::optional<Value>> {
+  using type = Value;
+};
+template <typename Value>
+struct ElementOf<std::vector<Value>> {
+  using type = Value;
+};
+
 /// A command, whose options are rows of the table; add() binds them to variables.
 class Command {
  public:
+  using Names = std::vector<std::string>;
+
   Command(CLI::App& app, const std::string& name);
 
   /// Binds an option or argument to a variable, whose value is the default. Does nothing and
   /// returns null if the command has no such row.
+  /// @param choices  allowed texts unless the row has its own; an enumeration has its names
   template <typename Value>
-  CLI::Option* add(const std::string& name, Value& value) {
-    if constexpr (std::is_enum_v<Value>) {
-      const auto set = [&value](Value chosen) { value = chosen; };
-      return add_choice<Value>(name, set, compare::to_string(value));
+  CLI::Option* add(const std::string& name, Value& value, Names choices = {}) {
+    using Element = typename ElementOf<Value>::type;
+    const compare::Json* const row = find(name);
+    if (row == nullptr) return nullptr;
+    const std::string names = row->at("name");
+    std::string meanings;
+    CLI::Option* option = nullptr;
+    if constexpr (std::is_enum_v<Element>) {
+      choices = compare::names<Element>();
+      meanings = compare::meanings<Element>();
+      option = app_.add_option_function<Names>(names, [&value](const Names& given) {
+        value = Value{};
+        for (const std::string& text : given) {
+          const auto one = compare::from_name<Element>(text);
+          if constexpr (requires { value.push_back(one); }) {
+            value.push_back(one);
+          } else {
+            value = one;
+          }
+        }
+      });
+      if constexpr (std::is_enum_v<Value>) option->default_str(compare::to_string(value));
+      if constexpr (!requires { value.size(); }) option->expected(1);
+    } else if constexpr (std::is_same_v<Value, bool>) {
+      option = app_.add_flag(names, value);
+    } else if (names.find('{') != std::string::npos) {
+      if constexpr (std::is_same_v<Value, std::string>) option = app_.add_flag(names, value);
     } else {
-      const compare::Json* const row = find(name);
-      if (row == nullptr) return nullptr;
-      const std::string names = row->at("name");
-      CLI::Option* option = nullptr;
-      if constexpr (std::is_same_v<Value, bool>) {
-        option = app_.add_flag(names, value);
-      } else if (names.find('{') != std::string::npos) {
-        if constexpr (std::is_same_v<Value, std::string>) option = app_.add_flag(names, value);
-      } else {
-        option = app_.add_option(names, value);
-      }
-      if constexpr (std::is_arithmetic_v<Value> || std::is_same_v<Value, std::string>) {
-        if (value != Value{}) option->capture_default_str();
-      }
-      return describe(option, *row, std::is_integral_v<Value>, row->value("choices", Names{}));
+      option = app_.add_option(names, value);
     }
-  }
-  template <typename Value>
-  requires std::is_enum_v<Value> CLI::Option* add(const std::string& name,
-                                                  std::optional<Value>& value) {
-    return add_choice<Value>(name, [&value](Value chosen) { value = chosen; });
+    if constexpr (std::is_arithmetic_v<Value> || std::is_same_v<Value, std::string>) {
+      if (value != Value{}) option->capture_default_str();
+    }
+    return describe(option, *row, std::is_integral_v<Value>, row->value("choices", choices),
+                    meanings);
   }
   /// Binds options in the order of the help: a name and a variable for each, or an object with the
   /// function add_to() for several.
@@ -78,21 +101,8 @@ class Command {
       bind_named(first, rest...);
     }
   }
-  /// Adds an option that calls a function with its value, one of an enumeration.
-  template <typename Value>
-  CLI::Option* add_choice(const std::string& name, const std::function<void(Value)>& set,
-                          const std::string& usual = {}) {
-    const auto set_name = [set](const std::string& text) { set(compare::from_name<Value>(text)); };
-    return add_function(name, set_name, compare::names<Value>(), compare::meanings<Value>(), usual);
-  }
-  /// Adds an option that calls a function with its text.
-  CLI::Option* add_function(const std::string& name,
-                            const std::function<void(const std::string&)>& set,
-                            const std::vector<std::string>& choices = {},
-                            const std::string& meanings = {}, const std::string& usual = {});
-
   /// Returns the allowed values of an option; empty if they are not listed.
-  [[nodiscard]] std::vector<std::string> choices(const std::string& name) const {
+  [[nodiscard]] Names choices(const std::string& name) const {
     return find(name)->value("choices", Names{});
   }
   [[nodiscard]] CLI::App& app() { return app_; }
@@ -105,8 +115,6 @@ class Command {
   void runs(const std::function<void()>& run);
 
  private:
-  using Names = std::vector<std::string>;
-
   template <typename Value, typename... Rest>
   void bind_named(const char* name, Value& value, Rest&... rest) {
     add(name, value);
@@ -115,8 +123,7 @@ class Command {
   /// Returns a row of the command, or of those that it uses; null if there is none.
   [[nodiscard]] const compare::Json* find(const std::string& name) const;
   static CLI::Option* describe(CLI::Option* option, const compare::Json& row, bool is_integer,
-                               const std::vector<std::string>& choices,
-                               const std::string& meanings = {});
+                               const Names& choices, const std::string& meanings);
 
   CLI::App& app_;
   const compare::Json& table_;
@@ -149,12 +156,9 @@ void add_command(CLI::App& app, const std::string& name, void (*run)(const Optio
 /// Returns a formatter for help texts with 80 columns.
 [[nodiscard]] std::shared_ptr<CLI::FormatterBase> help_formatter();
 
-/// Checks the first word of a command line. @throws compare::InputError with the nearest command
-void require_known_command(const CLI::App& app, const std::string& written);
-
-/// Checks an option that precedes any command.
-/// @throws compare::InputError with the nearest option
-void require_known_option(const CLI::App& app, const std::string& written);
+/// Checks the first word of a command line: a command, or an option that precedes any command.
+/// @throws compare::InputError with the nearest word
+void require_known_word(const CLI::App& app, const std::string& written);
 
 /// Returns a message for an invalid command line, with the nearest option.
 [[nodiscard]] std::string parse_message(const CLI::App& app, const CLI::ParseError& error);

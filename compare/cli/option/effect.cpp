@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <utility>
 
 #include "dlo/compare/choice.hpp"
 #include "dlo/compare/error.hpp"
@@ -21,22 +22,6 @@ OptionCondition condition_of(const std::string& word) {
   const std::size_t equals = word.find('=');
   if (equals == std::string::npos) return {word, {any_value}};
   return {word.substr(0, equals), CLI::detail::split(word.substr(equals + 1), ',')};
-}
-
-std::vector<IneffectiveOptions> rows_of_table() {
-  std::vector<IneffectiveOptions> rows;
-  for (const compare::Json& row : option_table().at("ineffective")) {
-    IneffectiveOptions& made = rows.emplace_back(
-        IneffectiveOptions{row.value("command", ""),
-                           expanded(row.at("options")),
-                           {},
-                           row.at("allowed"),
-                           row.value("stated", false) ? NoEffect::stated : NoEffect::refused});
-    for (const std::string& word : expanded(row.value("when", ""))) {
-      made.conditions.push_back(condition_of(word));
-    }
-  }
-  return rows;
 }
 
 /// Returns the value of an option or its default; for --format also the output file's extension.
@@ -98,14 +83,26 @@ bool is_of_scene(const IneffectiveOptions& row) {
 
 }  // namespace
 
-std::span<const IneffectiveOptions> ineffective_options() {
-  static const std::vector<IneffectiveOptions> rows = rows_of_table();
+std::vector<IneffectiveOptions> ineffective_options(const std::string& table) {
+  std::vector<IneffectiveOptions> rows;
+  for (const compare::Json& row :
+       option_table(table).value("ineffective", compare::Json::array())) {
+    IneffectiveOptions& made = rows.emplace_back(
+        IneffectiveOptions{expanded(row.at("options")),
+                           {},
+                           row.at("allowed"),
+                           row.value("stated", false) ? NoEffect::stated : NoEffect::refused});
+    for (const std::string& word : expanded(row.value("when", ""))) {
+      made.conditions.push_back(condition_of(word));
+    }
+  }
   return rows;
 }
 
 void check_effects(const CLI::App& command, const compare::ForceModelSettings* settings) {
-  for (const IneffectiveOptions& row : ineffective_options()) {
-    if (!row.command.empty() && row.command != command.get_name()) continue;
+  std::vector<IneffectiveOptions> rows = ineffective_options(command.get_name());
+  for (IneffectiveOptions& row : ineffective_options("common")) rows.push_back(std::move(row));
+  for (const IneffectiveOptions& row : rows) {
     // A notice is given only after the scene has been read, so that an error remains the only line.
     const bool at_scene = is_of_scene(row) || row.response == NoEffect::stated;
     if (at_scene != (settings != nullptr)) continue;

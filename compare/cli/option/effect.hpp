@@ -1,7 +1,6 @@
 #pragma once
 
 #include <CLI/CLI.hpp>
-#include <span>
 #include <string>
 #include <vector>
 
@@ -24,7 +23,6 @@ enum class NoEffect { refused, stated };
 
 /// Options of a command that have no effect if all conditions hold.
 struct IneffectiveOptions {
-  std::string command;  ///< empty: every command
   /// Long names. "--format" stands for its value, a format that the command cannot write then.
   std::vector<std::string> options;
   std::vector<OptionCondition> conditions;
@@ -32,8 +30,8 @@ struct IneffectiveOptions {
   NoEffect response = NoEffect::refused;
 };
 
-/// Returns all options that have no effect under some condition.
-[[nodiscard]] std::span<const IneffectiveOptions> ineffective_options();
+/// Returns the options of a table of options.toml that have no effect under some condition.
+[[nodiscard]] std::vector<IneffectiveOptions> ineffective_options(const std::string& table);
 
 /// Refuses or reports given options of a command that have no effect, before anything is computed.
 /// @param settings  force model of the loaded scene: rows with a condition on "law" and rows that

@@ -2,15 +2,12 @@
 
 #include <fcntl.h>
 #include <fmt/format.h>
-#include <sys/stat.h>
 #include <unistd.h>
 
 #include <algorithm>
 #include <atomic>
 #include <cerrno>
-#include <csignal>
 #include <cstring>
-#include <ctime>
 #include <filesystem>
 
 #include "base/input_file.hpp"
@@ -19,7 +16,6 @@
 #include "dlo/compare/error.hpp"
 #include "format/json.hpp"
 #include "option/command_line.hpp"
-#include "reading/scene_template.hpp"
 #include "trajectory/trajectory_files.hpp"
 
 namespace dlo::cli {
@@ -29,31 +25,6 @@ constexpr const char* standard_output = "standard output";
 
 // One for the process, as its descriptors are.
 std::atomic<RedirectedOutput*> redirected = nullptr;
-
-/// During its lifetime, writing to a pipe that nobody reads does not end the process.
-class WithoutBrokenPipes {
- public:
-  WithoutBrokenPipes() {
-    ::sigemptyset(&pipe_);
-    ::sigaddset(&pipe_, SIGPIPE);
-    sigset_t pending{};
-    ::sigpending(&pending);
-    was_pending_ = ::sigismember(&pending, SIGPIPE) == 1;
-    ::pthread_sigmask(SIG_BLOCK, &pipe_, &before_);
-  }
-  ~WithoutBrokenPipes() {
-    constexpr timespec now{};
-    while (!was_pending_ && ::sigtimedwait(&pipe_, nullptr, &now) < 0 && errno == EINTR) continue;
-    ::pthread_sigmask(SIG_SETMASK, &before_, nullptr);
-  }
-  WithoutBrokenPipes(const WithoutBrokenPipes&) = delete;
-  WithoutBrokenPipes& operator=(const WithoutBrokenPipes&) = delete;
-
- private:
-  sigset_t pipe_{};
-  sigset_t before_{};
-  bool was_pending_ = false;
-};
 
 bool has_long_name(const CLI::Option& option, std::initializer_list<std::string> names) {
   const std::vector<std::string>& own = option.get_lnames();
@@ -66,28 +37,6 @@ bool has_long_name(const CLI::Option& option, std::initializer_list<std::string>
 bool is_written_file(const CLI::Option& option) {
   return has_long_name(option,
                        {"output", "junit", "paraview", "plot", "report", "markdown", "write"});
-}
-
-/// Whether the option names input files, according to its help.
-bool is_read(const CLI::Option& option) {
-  if (is_written_file(option)) return false;
-  const auto names_files = [](const std::string& word) {
-    return word.starts_with("SCENE") || word.starts_with("FILE");
-  };
-  return names_files(option.get_type_name()) || names_files(names_of(option).front());
-}
-
-/// Returns the input files, except those of one option.
-std::vector<std::string> input_files_but(const CLI::App& command, const CLI::Option* omitted) {
-  std::vector<std::string> files;
-  for (const CLI::Option* option : command.get_options()) {
-    if (option == omitted || !is_read(*option)) continue;
-    for (const std::string& word : option->results()) {
-      files.push_back(word);
-      for (std::string& beside : compare::trajectory_files(word)) files.push_back(beside);
-    }
-  }
-  return files;
 }
 
 bool is_written(const CLI::App& command, const CLI::Option& option) {
@@ -109,17 +58,14 @@ void refuse_two_outputs(const std::string& option, const std::string& file,
   }
 }
 
-/// Refuses files that might be frames of a series. The number of frames, and so the names of all
+/// Refuses outputs that might be frames of a series. The number of frames, and so the names of all
 /// its files, is unknown before the computation.
-void refuse_among_frames(const std::string& series, const std::vector<std::string>& inputs,
-                         const std::vector<std::string>& outputs) {
-  for (const std::vector<std::string>* files : {&inputs, &outputs}) {
-    for (const std::string& file : *files) {
-      if (!compare::is_frame_of_series(file, series)) continue;
-      throw compare::InputError(fmt::format(
-          "--paraview {}: writes frames {}, and {} is {} too (allowed: another file)", series,
-          compare::frame_names(series), file, files == &inputs ? "read" : "written"));
-    }
+void refuse_among_frames(const std::string& series, const std::vector<std::string>& outputs) {
+  for (const std::string& file : outputs) {
+    if (!compare::is_frame_of_series(file, series)) continue;
+    throw compare::InputError(fmt::format(
+        "--paraview {}: writes frames {}, and {} is written too (allowed: another file)", series,
+        compare::frame_names(series), file));
   }
 }
 
@@ -144,11 +90,15 @@ void write_output(const OutputOptions& options, const Formats& formats) {
   write_output(options, formats.at(options.format)());
 }
 
-void write_output(const OutputOptions& options, const compare::Document& document,
-                  const std::function<std::string()>& csv) {
-  write_output(options, Formats{{"text", [&] { return document.text(); }},
-                                {"json", [&] { return json_text(document.json); }},
-                                {"csv", [&] { return csv ? csv() : document.csv(); }}});
+Formats formats_of(const compare::Document& document, Formats more) {
+  more.emplace("text", [&] { return document.text(); });
+  more.emplace("json", [&] { return json_text(document.json); });
+  more.emplace("csv", [&] { return document.csv(); });
+  return more;
+}
+
+void write_output(const OutputOptions& options, const compare::Document& document, Formats more) {
+  write_output(options, formats_of(document, std::move(more)));
 }
 
 RedirectedOutput::RedirectedOutput(std::string& out, std::string& err)
@@ -182,7 +132,6 @@ void close_standard_output() {
 
 void write_standard_error(std::string_view text) {
   if (RedirectedOutput* texts = RedirectedOutput::current()) return texts->append_err(text);
-  const WithoutBrokenPipes quietly;
   try {
     compare::write_all(STDERR_FILENO, text, "standard error");
   } catch (const compare::OutputError&) {
@@ -205,18 +154,9 @@ void reserve_standard_descriptors() {
   }
 }
 
-void check_output(const std::string& option, const std::string& file,
-                  const std::vector<std::string>& inputs) {
+void check_output(const std::string& option, const std::string& file) {
   if (file.empty()) {
     throw compare::InputError(fmt::format("{} \"\": empty (allowed: the name of a file)", option));
-  }
-  for (const std::string& input : inputs) {
-    std::error_code unknown;
-    if (!compare::same_file(file, input)) continue;
-    if (!std::filesystem::is_regular_file(input, unknown)) continue;  // such as /dev/stdin
-    throw compare::InputError(fmt::format("{} {}: is read too{} (allowed: another file)", option,
-                                          file,
-                                          input == file ? "" : fmt::format(", as {}", input)));
   }
   try {
     (void)compare::output_target(file);
@@ -226,7 +166,6 @@ void check_output(const std::string& option, const std::string& file,
 }
 
 void check_outputs(const CLI::App& command) {
-  const std::vector<std::string> inputs = input_files_but(command, nullptr);
   std::vector<std::string> outputs;
   std::vector<std::string> series;
   std::error_code unknown;
@@ -240,30 +179,27 @@ void check_outputs(const CLI::App& command) {
             fmt::format("{} \"\": empty (allowed: the name of a folder)", name));
       }
       if (folder) continue;
-      // --update rewrites the baseline that it has read.
-      check_output(name, file, input_files_but(command, option));
+      check_output(name, file);
       if (std::filesystem::is_regular_file(file, unknown) ||
           !std::filesystem::exists(file, unknown)) {
         refuse_two_outputs(name, file, outputs);
       }
       outputs.push_back(file);
+      // --update rewrites the baseline that it has read.
       if (is_written_file(*option)) compare::declare_output(file, name + " " + file);
       if (has_long_name(*option, {"paraview"})) series.push_back(file);
     }
   }
-  for (const std::string& file : series) refuse_among_frames(file, inputs, outputs);
-  if (RedirectedOutput::current() != nullptr) return;
-  compare::declare_output("/dev/fd/1", standard_output);
+  for (const std::string& file : series) {
+    refuse_among_frames(file, outputs);
+    compare::declare_output(
+        file,
+        fmt::format("--paraview {}, which writes frames {}", file, compare::frame_names(file)),
+        compare::is_frame_of_series);
+  }
   // If a shell appends to an input by ">>", the command would write to the file that it reads.
-  for (const std::string& input : inputs) {
-    struct stat open {};
-    struct stat read {};
-    if (::fstat(STDOUT_FILENO, &open) != 0 || ::stat(input.c_str(), &read) != 0) continue;
-    if (!S_ISREG(open.st_mode) || open.st_dev != read.st_dev || open.st_ino != read.st_ino) {
-      continue;
-    }
-    throw compare::InputError(fmt::format("{}: is {}, which is read too (allowed: another file)",
-                                          standard_output, input));
+  if (RedirectedOutput::current() == nullptr) {
+    compare::declare_output("/dev/fd/1", standard_output);
   }
 }
 

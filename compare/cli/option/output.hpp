@@ -57,12 +57,14 @@ using Formats = std::map<std::string, std::function<std::string()>>;
 /// @throws compare::OutputError naming the output that cannot be written
 void write_output(const OutputOptions& options, const std::string& content);
 
+/// Returns the formats of a document: text, json, csv. @param more  other formats, or in their
+/// place
+[[nodiscard]] Formats formats_of(const compare::Document& document, Formats more = {});
+
 /// Writes a result in the requested format.
 void write_output(const OutputOptions& options, const Formats& formats);
-/// Writes a document in the requested format.
-/// @param csv  makes the CSV table, if it is not the document's own
 void write_output(const OutputOptions& options, const compare::Document& document,
-                  const std::function<std::string()>& csv = {});
+                  Formats more = {});
 
 /// Writes to standard output. @throws compare::OutputError if it cannot be written,
 /// compare::BrokenPipe if nobody reads it
@@ -76,8 +78,7 @@ template <typename... Arguments>
 void say(fmt::format_string<Arguments...> format, Arguments&&... arguments) {
   say_line(fmt::format(format, std::forward<Arguments>(arguments)...));
 }
-/// Writes a text to standard error unchanged. Errors of this write are ignored, and SIGPIPE is not
-/// raised.
+/// Writes a text to standard error unchanged. Errors of this write are ignored.
 void write_standard_error(std::string_view text);
 
 /// During its lifetime, output of all threads to standard output and standard error is appended to
@@ -108,16 +109,14 @@ class RedirectedOutput {
 /// numbers. Writing to a standard output that was closed remains an error.
 void reserve_standard_descriptors();
 
-/// Refuses an output that cannot be written, or that is an input, before anything is computed.
+/// Refuses an output that cannot be written, before anything is computed.
 /// @param option  name of the option, for messages
-/// @param inputs  files that are read
 /// @throws compare::InputError
-void check_output(const std::string& option, const std::string& file,
-                  const std::vector<std::string>& inputs);
+void check_output(const std::string& option, const std::string& file);
 
-/// Checks all files that the command's options write, as check_output() does, and standard output;
-/// refuses files that are written twice. Commands check folders themselves.
-/// @throws compare::InputError
+/// Checks all files that the command's options write, as check_output() does; refuses files that
+/// are written twice. Declares them and standard output, so that none of them is read. Commands
+/// check folders themselves. @throws compare::InputError
 void check_outputs(const CLI::App& command);
 
 }  // namespace dlo::cli

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <filesystem>
+#include <iterator>
 #include <optional>
 
 #include "base/input_file.hpp"
@@ -23,11 +24,10 @@ compare::TemporaryFolder drawing_folder(const std::string& option) {
 }
 
 std::optional<compare::PictureFormat> format_of(const std::string& file) {
-  const std::string ending = fs::path(file).extension().string();
-  if (ending == ".svg") return compare::PictureFormat::svg;
-  if (ending == ".png") return compare::PictureFormat::png;
-  if (ending == ".pdf") return compare::PictureFormat::pdf;
-  return std::nullopt;
+  const auto* const found =
+      std::ranges::find(compare::picture_extensions, fs::path(file).extension().string());
+  if (found == std::end(compare::picture_extensions)) return std::nullopt;
+  return static_cast<compare::PictureFormat>(found - std::begin(compare::picture_extensions));
 }
 
 }  // namespace
@@ -58,8 +58,8 @@ std::string drawn_picture(const compare::Picture& picture, compare::PictureForma
     throw compare::OutputError(option + ": there is nothing to draw");
   }
   const compare::TemporaryFolder folder = drawing_folder(option);
-  constexpr const char* outputs[] = {"plot.svg", "plot.png", "plot.pdf"};
-  const std::string output = outputs[static_cast<std::size_t>(format)];
+  const std::string output =
+      std::string("plot") + compare::picture_extensions[static_cast<std::size_t>(format)];
   compare::write_file(folder.path() / "plot.gp", compare::picture_script(picture, format, output));
   const std::string failure = compare::run_script("plot.gp", output, folder.path());
   if (!failure.empty()) throw compare::OutputError(option + ": " + failure);

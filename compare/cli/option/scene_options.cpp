@@ -3,9 +3,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <limits>
-#include <type_traits>
-#include <utility>
 
 #include "dlo/compare/calibrated_rod.hpp"
 #include "dlo/compare/error.hpp"
@@ -13,39 +10,8 @@
 #include "option/effect.hpp"
 #include "polygon/natural_plane.hpp"
 #include "scene/scene_problem.hpp"
-#include "toml/quantity.hpp"
 
 namespace dlo::cli {
-namespace {
-
-using compare::Dimension;
-using compare::InputError;
-using Settings = compare::ForceModelSettings;
-
-constexpr double unbounded = std::numeric_limits<double>::infinity();
-
-/// Reads a quantity of an option: with a unit, or a number in SI units.
-double option_quantity(const std::string& option, const std::string& text, Dimension dimension,
-                       double below) {
-  double value = 0;
-  try {
-    value = compare::parse_quantity(text, Dimension::number);
-  } catch (const InputError&) {
-    try {
-      value = compare::parse_quantity(text, dimension);
-    } catch (const InputError& error) {
-      throw InputError(fmt::format("{} = {}: {}", option, text, error.what()));
-    }
-  }
-  const bool zero_allowed = below < unbounded;
-  if (!(zero_allowed ? value >= 0 : value > 0) || !(value < below)) {
-    throw InputError(fmt::format("{} = {}: out of range (allowed: {})", option, text,
-                                 zero_allowed ? fmt::format("0 <= value < {}", below) : "> 0"));
-  }
-  return value;
-}
-
-}  // namespace
 
 void warn_of_no_twist(const compare::Scene& scene, const std::string& study) {
   if (!compare::takes_twist(scene, scene.force_model)) return;
@@ -97,40 +63,32 @@ void PlanOptions::add_to(Command& command) {
 
 void SceneOptions::add_to(Command& command) {
   command_ = &command.app();
-  command.bind("--time", time_, "--parameters", parameters_, "--points", points_);
-  const auto choice = [&](const char* name, auto field) {
-    using Value = std::remove_reference_t<decltype(std::declval<Settings&>().*field)>;
-    command.add_choice<Value>(name, [this, field](Value value) {
-      changes_.emplace_back([field, value](Settings& settings) { settings.*field = value; });
-    });
-  };
-  const auto quantity = [&](const char* name, std::optional<double> Settings::*field,
-                            Dimension dimension, double below = unbounded) {
-    command.add_function(name, [=, this](const std::string& text) {
-      const double value = option_quantity(name, text, dimension, below);
-      changes_.emplace_back([field, value](Settings& settings) { settings.*field = value; });
-    });
-  };
-  choice("--law", &Settings::law);
-  choice("--bookkeeping", &Settings::bookkeeping);
-  choice("--stepper", &Settings::stepper);
-  choice("--bending-rule", &Settings::bending_rule);
-  quantity("--design-curvature", &Settings::design_curvature, Dimension::curvature);
-  quantity("--c-b", &Settings::c_b, Dimension::force);
-  quantity("--c-c", &Settings::c_c, Dimension::force);
-  quantity("--c-F", &Settings::c_F, Dimension::number);
-  quantity("--c-h", &Settings::c_h, Dimension::number, 1);
-  quantity("--l-s", &Settings::l_s, Dimension::length);
+  command.bind("--time", time_, "--parameters", parameters_, "--points", points_, "--law", law_,
+               "--bookkeeping", bookkeeping_, "--stepper", stepper_, "--bending-rule",
+               bending_rule_, "--design-curvature", design_curvature_, "--c-b", c_b_, "--c-c", c_c_,
+               "--c-F", c_F_, "--c-h", c_h_, "--l-s", l_s_);
   command.bind("--terms", solve_.terms, "--max-evaluations", solve_.max_evaluations, "--time-limit",
                solve_.time_limit, "--materials", materials_, "--calibrated", calibrated_,
                "--max-steps", solve_.max_steps, "--rest-tolerance", solve_.rest_tolerance);
 }
 
 void SceneOptions::apply(compare::Scene& scene) const {
-  Settings& settings = scene.force_model;
+  compare::ForceModelSettings& settings = scene.force_model;
   if (!parameters_.empty()) settings = compare::load_parameters(parameters_);
   if (points_ > 0) settings.points = points_;
-  for (const auto& change : changes_) change(settings);
+  const auto set = [](auto& setting, const auto& given) {
+    if (given) setting = *given;
+  };
+  set(settings.law, law_);
+  set(settings.bookkeeping, bookkeeping_);
+  set(settings.stepper, stepper_);
+  set(settings.bending_rule, bending_rule_);
+  set(settings.design_curvature, design_curvature_);
+  set(settings.c_b, c_b_);
+  set(settings.c_c, c_c_);
+  set(settings.c_F, c_F_);
+  set(settings.c_h, c_h_);
+  set(settings.l_s, l_s_);
   compare::check(settings, scene.file + ", with the command line's options");
   if (command_ != nullptr) check_effects(*command_, &settings);
 }
@@ -149,7 +107,7 @@ compare::Scene SceneOptions::load(const std::string& path) const {
   apply(scene);
   if (!time_) return scene;
   if (!compare::motion_of(scene)) {
-    throw InputError(
+    throw compare::InputError(
         fmt::format("{}: --time {:g}: nothing moves (allowed: no --time, or a scene with "
                     "[[gripper.pose]] or [[obstacle.pose]])",
                     scene.file, *time_));

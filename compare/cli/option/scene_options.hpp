@@ -1,7 +1,6 @@
 #pragma once
 
 #include <CLI/CLI.hpp>
-#include <functional>
 #include <optional>
 #include <string>
 #include <vector>
@@ -36,8 +35,12 @@ class SceneOptions {
   const CLI::App* command_ = nullptr;
   std::string materials_, calibrated_, parameters_;
   int points_ = 0;
-  /// Changes by the given options, applied after --parameters.
-  std::vector<std::function<void(compare::ForceModelSettings&)>> changes_;
+  // Members of ForceModelSettings, which are set after --parameters.
+  std::optional<compare::BendingLaw> law_;
+  std::optional<compare::Bookkeeping> bookkeeping_;
+  std::optional<compare::Stepper> stepper_;
+  std::optional<compare::BendingRule> bending_rule_;
+  std::optional<double> design_curvature_, c_b_, c_c_, c_F_, c_h_, l_s_;
   std::optional<double> time_;
   compare::SolveOptions solve_;
 };

@@ -8,7 +8,9 @@
 
 namespace dlo::cli {
 void ShapeOptions::add_to(Command& command) {
-  command.bind("--unit", unit_, "--register", pose_, "--arc-lengths", arc_lengths_);
+  command.add("--unit", unit_, compare::unit_names(compare::Dimension::length));
+  command.add("--register", pose_, compare::names<compare::PoseFreedom>());
+  command.add("--arc-lengths", arc_lengths_);
 }
 
 compare::MeasuredShape ShapeOptions::load(const std::string& path) const {

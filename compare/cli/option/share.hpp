@@ -1,6 +1,5 @@
 #pragma once
 
-#include <CLI/CLI.hpp>
 #include <optional>
 #include <string>
 
@@ -12,11 +11,8 @@
 
 namespace dlo::cli {
 
-/// Returns a check for a fraction of the rod's length, such as "0.1%" or 0.001, > 0 and < 1.
-[[nodiscard]] CLI::Validator share_of_length();
-
-/// Returns a check for a fraction such as "1%" or 0.01, from 0 to `high`.
-[[nodiscard]] CLI::Validator share_up_to(double high);
+/// Reads a share such as "1%" or 0.01. @throws compare::InputError if the text is no number
+[[nodiscard]] double share_from(const std::string& text);
 
 /// Returns the fraction of a tolerance such as "5% of deflection"; empty if the text is not a
 /// fraction of the deflection.

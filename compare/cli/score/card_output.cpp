@@ -20,12 +20,8 @@ using compare::CardScene;
 using compare::Cause;
 using compare::RunStatus;
 
-std::string error_word(double error) {
-  return std::isfinite(error) ? fmt::format("{:.1e}", error) : "-";
-}
-
-std::string order_word(double order) {
-  return std::isfinite(order) ? fmt::format("{:.1f}", order) : "-";
+std::string number_word(const char* format, double number) {
+  return std::isfinite(number) ? fmt::format(fmt::runtime(format), number) : "-";
 }
 
 std::string causes_words(const CardGroup& group) {
@@ -89,25 +85,23 @@ std::vector<std::pair<std::string, std::string>> wrong_scenes(const Card& card) 
   return reasons;
 }
 
-std::vector<std::string> row_of(const CardGroup& group) {
-  std::vector<std::string> row = {
-      group.name, fmt::format("{} of {}", group.right, group.scenes - group.not_supported)};
-  for (const double error : group.largest) row.push_back(error_word(error));
-  row.push_back(order_word(group.order));
-  row.push_back(fmt::format("{:.2g} s", group.seconds));
-  row.push_back(causes_words(group));
-  return row;
+/// Returns the table of classes: a row for each, whose cells are texts by their titles.
+Json rows_of(const Card& card) {
+  return json_list(card.groups(), [&](const CardGroup& group) -> Json {
+    Json row = {
+        {"class", group.name},
+        {"right", fmt::format("{} of {}", group.right, group.scenes - group.not_supported)}};
+    for (std::size_t i = 0; i < card.points.size(); ++i) {
+      row[fmt::format("N = {}", card.points[i])] = number_word("{:.1e}", group.largest[i]);
+    }
+    row["order"] = number_word("{:.1f}", group.order);
+    row["time"] = fmt::format("{:.2g} s", group.seconds);
+    row["causes"] = causes_words(group);
+    return row;
+  });
 }
 
-std::vector<std::string> head_of(const Card& card) {
-  std::vector<std::string> head = {"class", "right"};
-  for (const int points : card.points) head.push_back(fmt::format("N = {}", points));
-  head.insert(head.end(), {"order", "time", "causes"});
-  return head;
-}
-
-std::string markdown_row(std::vector<std::string> cells) {
-  for (std::string& cell : cells) cell = markdown(cell);
+std::string markdown_row(const std::vector<std::string>& cells) {
   return fmt::format("| {} |\n", fmt::join(cells, " | "));
 }
 
@@ -116,18 +110,9 @@ std::string markdown_row(std::vector<std::string> cells) {
 std::string cards_text(const std::vector<Card>& cards) {
   std::string out;
   for (const Card& card : cards) {
-    append(out, "{}{}: {} (suite {})\n  {:<11}{:>9}", out.empty() ? "" : "\n", card.simulator,
-           summary(card), card.battery_version, "class", "right");
-    for (const int points : card.points) append(out, "{:>9}", fmt::format("N = {}", points));
-    append(out, "{:>7}{:>11}  {}\n", "order", "time", "causes");
-    for (const CardGroup& group : card.groups()) {
-      const std::vector<std::string> row = row_of(group);
-      append(out, "  {:<11}{:>9}", row[0], row[1]);
-      for (std::size_t i = 2; i < row.size() - 3; ++i) append(out, "{:>9}", row[i]);
-      append(out, "{:>7}{:>11}  {}", row[row.size() - 3], row[row.size() - 2], row.back());
-      out.erase(out.find_last_not_of(' ') + 1);
-      out += "\n";
-    }
+    append(out, "{}{}: {} (suite {})\n", out.empty() ? "" : "\n", card.simulator, summary(card),
+           card.battery_version);
+    out += compare::Document{.json = {{"classes", rows_of(card)}}}.text();
     for (const auto& [scenes, wrong] : wrong_scenes(card)) append(out, "  {}: {}\n", scenes, wrong);
   }
   return out;
@@ -138,10 +123,18 @@ std::string cards_markdown(const std::vector<Card>& cards) {
   for (const Card& card : cards) {
     append(out, "{}**{}**: {} (suite {})\n\n", out.empty() ? "" : "\n", markdown(card.simulator),
            summary(card), card.battery_version);
-    const std::vector<std::string> head = head_of(card);
-    out += markdown_row(head);
-    out += markdown_row(std::vector<std::string>(head.size(), "---"));
-    for (const CardGroup& group : card.groups()) out += markdown_row(row_of(group));
+    std::vector<std::string> head;
+    std::string rows;
+    for (const Json& row : rows_of(card)) {
+      head.clear();
+      std::vector<std::string> cells;
+      for (const auto& [title, cell] : row.items()) {
+        head.push_back(markdown(title));
+        cells.push_back(markdown(cell));
+      }
+      rows += markdown_row(cells);
+    }
+    out += markdown_row(head) + markdown_row(std::vector<std::string>(head.size(), "---")) + rows;
     std::string list;
     for (const auto& [scenes, wrong] : wrong_scenes(card)) {
       append(list, "- `{}`: {}\n", scenes, markdown(wrong));
@@ -191,27 +184,9 @@ compare::Figure card_figure(const Card& card) {
 
 compare::PageResult card_page(const Card& card) {
   const CardGroup total = card.total();
-  const bool passes = total.right == total.solved && total.failed == 0 && total.not_judged == 0;
-  compare::PageResult page{
-      .title = card.simulator,
-      .passes = passes,
-      .verdict = summary(card),
-      .summary = fmt::format("Suite {}. A scene is right within 1 % of the length (RMS).",
-                             card.battery_version),
-      .cause = {},
-      .numbers = {{"right", std::to_string(total.right), fmt::format("of {}", total.scenes)},
-                  {"order of convergence", order_word(total.order), "the smallest"},
-                  {"time", fmt::format("{:.2g} s", total.seconds), "of all runs"}},
-      .pictures = {},
-      .table = {"Largest RMS distance from the rod over its length, by classes", head_of(card), {}},
-      .details = {}};
-  const std::string causes = causes_words(total);
-  if (!causes.empty()) page.cause = "Causes: " + causes + ".";
-  for (const CardGroup& group : card.groups()) page.table.rows.push_back(row_of(group));
-  for (const auto& [scenes, wrong] : wrong_scenes(card)) {
-    append(page.details, "{}: {}\n", scenes, wrong);
-  }
-  return page;
+  return {.title = card.simulator,
+          .passes = total.right == total.solved && total.failed == 0 && total.not_judged == 0,
+          .text = cards_text({card})};
 }
 
 }  // namespace dlo::cli

@@ -19,32 +19,25 @@ constexpr const char* not_run = "not run";
 constexpr const char* none_within = "no run is within the error";
 
 Json run_json(const BenchmarkRun& run, const char* kind) {
-  Json result = {{"scene", run.scene},
-                 {"kind", kind},
-                 {"model", model_of(run)},
-                 {"is_program", !run.program.empty()},
-                 {"setting", setting_of(run)},
-                 {"law", nullptr},
-                 {"bookkeeping", nullptr},
-                 {"stepper", nullptr},
-                 {"c_c_over_AE", nullptr},
-                 {"size", run.size},
-                 {"time_s", run.time.median_s},
-                 {"lower_quartile_s", run.time.lower_quartile_s},
-                 {"upper_quartile_s", run.time.upper_quartile_s},
-                 {"repeats", run.time.repeats},
-                 {"evaluations", run.program.empty() ? Json(run.evaluations) : Json()},
-                 {"rms_over_length", run.rms_over_length},
-                 {"front", run.front}};
-  if (run.variant) {
-    result["law"] = compare::to_string(run.variant->law);
-    result["bookkeeping"] = compare::to_string(run.variant->bookkeeping);
-  }
-  if (run.variant && run.model == compare::Model::force) {
-    result["stepper"] = compare::to_string(run.variant->stepper);
-    result["c_c_over_AE"] = run.variant->stretch_share;
-  }
-  return result;
+  const bool steps = run.variant && run.model == compare::Model::force;
+  return {
+      {"scene", run.scene},
+      {"kind", kind},
+      {"model", model_of(run)},
+      {"is_program", !run.program.empty()},
+      {"setting", setting_of(run)},
+      {"law", run.variant ? Json(compare::to_string(run.variant->law)) : Json()},
+      {"bookkeeping", run.variant ? Json(compare::to_string(run.variant->bookkeeping)) : Json()},
+      {"stepper", steps ? Json(compare::to_string(run.variant->stepper)) : Json()},
+      {"c_c_over_AE", steps ? Json(run.variant->stretch_share) : Json()},
+      {"size", run.size},
+      {"time_s", run.time.median_s},
+      {"lower_quartile_s", run.time.lower_quartile_s},
+      {"upper_quartile_s", run.time.upper_quartile_s},
+      {"repeats", run.time.repeats},
+      {"evaluations", run.program.empty() ? Json(run.evaluations) : Json()},
+      {"rms_over_length", run.rms_over_length},
+      {"front", run.front}};
 }
 
 Json answers_json(const std::vector<BenchmarkAnswer>& answers,

@@ -23,7 +23,7 @@ Json frame_error_json(const FrameError& frame) {
 
 }  // namespace
 
-compare::Document motion_check_document(const MotionCheck& check) {
+compare::Document motion_check_document(const MotionCheck& check, const std::string& verdict) {
   Json result = {{"schema", "dlo/motion_check/1"},
                  {"scene", check.scene.name},
                  {"motion", check.file},
@@ -63,20 +63,17 @@ compare::Document motion_check_document(const MotionCheck& check) {
     return {{"s_m", marker.from_m}, {"rms_m", marker.rms_m}, {"largest_m", marker.largest_m}};
   });
   result["frames"] = json_list(check.errors.frames, frame_error_json);
+  Json shown = result;
+  for (const char* key : {"verdict", "reason", "frames"}) shown.erase(key);
+  std::string head =
+      fmt::format("{}: {}\n\n", verdict.empty() ? result["verdict"].get<std::string>() : verdict,
+                  compare::display(check.reason));
   return {.json = std::move(result),
           .columns = {{"frames", "time_s,rms_m,largest_m,largest_at_m"}},
           .large = magnitudes(check.scene),
-          .table = "frames"};
-}
-
-std::string motion_check_text(const MotionCheck& check, const std::string& verdict) {
-  compare::Document document = motion_check_document(check);
-  document.columns["frames"] = "";
-  std::string text = fmt::format(
-      "{}: {}\n\n", verdict.empty() ? document.json["verdict"].get<std::string>() : verdict,
-      compare::display(check.reason));
-  for (const char* key : {"verdict", "reason"}) document.json.erase(key);
-  return text + document.text();
+          .table = "frames",
+          .head = std::move(head),
+          .shown = std::move(shown)};
 }
 
 }  // namespace dlo::cli

@@ -10,15 +10,8 @@ using compare::MovingChoices;
 using compare::MovingRow;
 
 const char* to_text(compare::MovingStatus status) {
-  switch (status) {
-    case compare::MovingStatus::finished:
-      return "finished";
-    case compare::MovingStatus::too_many_steps:
-      return "given up";
-    case compare::MovingStatus::diverged:
-      break;
-  }
-  return "diverged";
+  if (status == compare::MovingStatus::finished) return "finished";
+  return status == compare::MovingStatus::too_many_steps ? "given up" : "diverged";
 }
 
 Json moving_json(const MovingChoices& choices) {

@@ -49,12 +49,11 @@ void write_series(const compare::TrackResult& found, const compare::Scene& scene
                                                const compare::Scene& scene, double rate,
                                                int samples);
 
-/// Returns the document `dlo/motion_check/1`.
-[[nodiscard]] compare::Document motion_check_document(const compare::MotionCheck& check);
-/// Returns the document's text without the frames, after the verdict and its reason.
+/// Returns the document `dlo/motion_check/1`. Its text begins with the verdict and its reason, and
+/// omits the frames.
 /// @param verdict  coloured "pass" or "fail" for a terminal; empty: not coloured
-[[nodiscard]] std::string motion_check_text(const compare::MotionCheck& check,
-                                            const std::string& verdict = {});
+[[nodiscard]] compare::Document motion_check_document(const compare::MotionCheck& check,
+                                                      const std::string& verdict = {});
 
 /// Returns the document `dlo/motion_fit/1`.
 [[nodiscard]] compare::Document motion_fit_document(const compare::MotionFit& fit,

@@ -77,8 +77,7 @@ namespace dlo::cli {
 /// Draws the largest error of each class against N.
 [[nodiscard]] compare::Figure card_figure(const compare::Card& card);
 
-/// Returns results of a simulator for a page, without pictures: causes of wrong scenes, numbers by
-/// class, and the wrong scenes as details.
+/// Returns the results of a simulator for a page, without pictures.
 [[nodiscard]] compare::PageResult card_page(const compare::Card& card);
 
 }  // namespace dlo::cli

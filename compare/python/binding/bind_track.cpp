@@ -130,8 +130,7 @@ AnyResult check_motion(const SharedScene& shared, const RecordedRows& rows, cons
     return compare::check_motion(scene, recorded, request,
                                  [&](auto, auto) { signals.throw_if_stopped(); });
   });
-  return std::make_shared<Texts>(cli::motion_check_text(found),
-                                 cli::json_text(cli::motion_check_document(found).json));
+  return texts_of(cli::motion_check_document(found));
 }
 
 }  // namespace

@@ -13,7 +13,6 @@
 #include <utility>
 #include <vector>
 
-#include "base/output_file.hpp"
 #include "dlo/compare/error.hpp"
 
 namespace dlo::compare {
@@ -52,10 +51,15 @@ std::string nearby(const std::string& path, int error) {
 /// Files of one command. Paths are compared when they are used, because the numbers (inodes) of
 /// removed files are given to new files.
 struct KnownFiles {
+  struct Output {
+    std::string file;
+    std::string name;  // in messages
+    IsWritten is_written;
+  };
   std::mutex guard;
   int commands = 0;  // number of InputsKept
   std::vector<std::string> inputs;
-  std::vector<std::pair<std::string, std::string>> outputs;  // file, and its name in messages
+  std::vector<Output> outputs;
 };
 
 KnownFiles& known_files() {
@@ -71,8 +75,8 @@ void record_input(const std::string& path) {
   if (known.commands == 0 || !std::filesystem::is_regular_file(path, unknown)) return;
   // A file whose reading is refused is an input too: the caller may continue without it.
   if (std::ranges::find(known.inputs, path) == known.inputs.end()) known.inputs.push_back(path);
-  for (const auto& [output, name] : known.outputs) {
-    if (same_file(output, path)) refuse_input(output, name, path);
+  for (const auto& [output, name, is_written] : known.outputs) {
+    if (is_written(path, output)) refuse_input(output, name, path);
   }
 }
 
@@ -90,9 +94,9 @@ InputsKept::~InputsKept() {
   known_files().outputs.clear();
 }
 
-void declare_output(const std::string& file, const std::string& name) {
+void declare_output(const std::string& file, const std::string& name, IsWritten is_written) {
   const std::lock_guard lock(known_files().guard);
-  if (known_files().commands > 0) known_files().outputs.emplace_back(file, name);
+  if (known_files().commands > 0) known_files().outputs.push_back({file, name, is_written});
 }
 
 void require_not_read(const std::string& file, const std::string& name) {

@@ -4,6 +4,8 @@
 #include <string>
 #include <string_view>
 
+#include "base/output_file.hpp"
+
 namespace dlo::compare {
 
 /// A file that is read from beginning to end. Only the end of the file ends the reading: any other
@@ -48,9 +50,13 @@ class InputsKept {
   InputsKept& operator=(const InputsKept&) = delete;
 };
 
+/// Whether an input is written if a command writes an output.
+using IsWritten = bool (*)(const std::string& input, const std::string& output);
+
 /// Declares a file that will be written, so that reading it fails before anything is computed.
 /// @param name  beginning of the message, such as "--output shape.csv"
-void declare_output(const std::string& file, const std::string& name);
+void declare_output(const std::string& file, const std::string& name,
+                    IsWritten is_written = same_file);
 
 /// Checks that a file may be written.
 /// @throws InputError that begins with `name` if InputsKept exists and the file was read

@@ -25,6 +25,9 @@ namespace dlo::compare {
 /// File formats of a picture.
 enum class PictureFormat { svg, png, pdf };
 
+/// Extensions of their files.
+inline constexpr const char* picture_extensions[] = {".svg", ".png", ".pdf"};
+
 /// Returns a text as a gnuplot string that is quoted so that its content cannot end it or be
 /// executed.
 [[nodiscard]] std::string gnuplot_string(const std::string& text);

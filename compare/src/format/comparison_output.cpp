@@ -8,6 +8,7 @@
 #include "base/number.hpp"
 #include "base/text.hpp"
 #include "dlo/compare/deviation.hpp"
+#include "dlo/compare/shape_verdict.hpp"
 #include "format/result_output.hpp"
 #include "judge/budget_parts.hpp"
 #include "record/csv_table.hpp"
@@ -19,10 +20,12 @@ namespace {
 /// Returns the parts of the error budget. A share is the projection of a part on the total, so that
 /// the shares add up to 1; a part orthogonal to the total has a length, but no share.
 Json budget_rows(const compare::Comparison& comparison) {
-  return json_list(compare::shown_parts(comparison), [](const auto& row) -> Json {
+  Json rows = json_list(compare::shown_parts(comparison), [](const auto& row) -> Json {
     return {
         {"part", row.first}, {"rms_m", row.second->rms_m}, {"share_of_total", row.second->share}};
   });
+  rows.push_back({{"part", "total"}, {"rms_m", comparison.budget.total_m}, {"share_of_total", 1}});
+  return rows;
 }
 
 }  // namespace
@@ -63,8 +66,22 @@ void add_modulus(std::string& out, const compare::EffectiveModulus& modulus, dou
   out += ")\n";
 }
 
+bool within_limit(const compare::Comparison& c) {
+  return c.deviation.rms_m <= compare::default_tolerance(c.length).allowed_m;
+}
+
 std::string comparison_text(const compare::Comparison& c) {
-  std::string out = compare::display(c.scene) + "\n";
+  std::string out =
+      fmt::format("{}: {}, RMS {:.4g} mm, limit {:.4g} mm = 1 % of l", compare::display(c.scene),
+                  within_limit(c) ? "pass" : "fail", c.deviation.rms_m * 1e3,
+                  compare::default_tolerance(c.length).allowed_m * 1e3);
+  const auto parts = compare::shown_parts(c);
+  const auto largest =
+      std::ranges::max_element(parts, {}, [](const auto& part) { return part.second->share; });
+  if (!within_limit(c) && largest != parts.end()) {
+    append(out, "; largest part: {}, {:.4g} %", largest->first, largest->second->share * 100);
+  }
+  out += "\n";
   if (!c.unverified.empty()) {
     append(out, "  reference       {}: nothing below is proven\n", c.unverified);
   }
@@ -74,22 +91,14 @@ std::string comparison_text(const compare::Comparison& c) {
     add_modulus(out, c.effective_modulus, c.deviation.rms_m / c.deviation.rms_over_movement,
                 c.stiffness, NAN);
   }
-  compare::Document details{.json = comparison_json(c),
-                            .large = {.length = c.length, .energy = std::abs(c.state.energy_J)}};
-  Json& json = details.json;
-  const Json modulus = modulus_json(c.effective_modulus);
-  for (const auto& [key, value] : modulus.items()) json.erase(key);
-  for (const char* key : {"scene", "law", "bookkeeping", "points", "plan", "arc_length_m",
-                          "force_points_m", "energy_points_m", "reference_verified"}) {
-    json.erase(key);
-  }
-  for (const char* key : {"rms_m", "max_m", "max_at_m", "rms_over_length", "rms_over_movement"}) {
-    json["deviation"].erase(key);
-  }
-  if (json.contains("contacts")) count_from_1(json["contacts"]);
-  json.erase("budget");
-  json["error_budget"] = budget_rows(c);
-  json["deviation"]["budget_total_m"] = c.budget.total_m;
+  compare::Document details{
+      .json = picked(comparison_json(c),
+                     {"gamma", "law", "bookkeeping", "points", "undeformed_rms_over_length",
+                      "neglected", "contacts", "state/energy_above_lowest_J", "state/stable_found",
+                      "state/unstable_found"}),
+      .large = {.length = c.length, .energy = std::abs(c.state.energy_J)}};
+  if (details.json.contains("contacts")) count_from_1(details.json["contacts"]);
+  details.json["error_budget"] = budget_rows(c);
   return out + "\n" + details.text() + "\n";
 }
 

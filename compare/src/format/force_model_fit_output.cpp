@@ -27,23 +27,6 @@ const char* c_c_origin(const ForceModelFit& fit) {
                              : "stretches the rod by a tenth of the target at most";
 }
 
-}  // namespace
-
-std::string force_model_csv(const ForceModelFit& fit) {
-  compare::CsvTable table(
-      "scene,gamma,holdout,law=parameters/law,bookkeeping=parameters/bookkeeping,"
-      "points=parameters/points,c_c=parameters/c_c,c_F=parameters/c_F,c_h=parameters/c_h,"
-      "l_s=parameters/l_s,c_b=parameters/c_b");
-  for (const RuleDeviations& rule : fit.rules) {
-    table.add(fmt::format("rms_over_length_{0}=rules/{0}/rms_over_length",
-                          compare::to_string(rule.rule)));
-  }
-  table.add("rms_over_length_stepped=rms_over_length,steps");
-  Json document = force_model_json(fit);
-  for (Json& row : document["scenes"]) row["parameters"] = document["parameters"];
-  return table.text(document["scenes"]);
-}
-
 Json force_model_json(const ForceModelFit& fit) {
   const compare::ForceModelSettings& s = fit.settings;
   Json scenes = Json::array();
@@ -86,8 +69,27 @@ Json force_model_json(const ForceModelFit& fit) {
           {"scenes", std::move(scenes)}};
 }
 
-std::string force_model_text(const ForceModelFit& fit, bool target_was_given) {
-  std::string out = fmt::format("worst {}", percent(fit.worst()));
+}  // namespace
+
+std::string force_model_csv(const ForceModelFit& fit) {
+  compare::CsvTable table(
+      "scene,gamma,holdout,law=parameters/law,bookkeeping=parameters/bookkeeping,"
+      "points=parameters/points,c_c=parameters/c_c,c_F=parameters/c_F,c_h=parameters/c_h,"
+      "l_s=parameters/l_s,c_b=parameters/c_b");
+  for (const RuleDeviations& rule : fit.rules) {
+    table.add(fmt::format("rms_over_length_{0}=rules/{0}/rms_over_length",
+                          compare::to_string(rule.rule)));
+  }
+  table.add("rms_over_length_stepped=rms_over_length,steps");
+  Json document = force_model_json(fit);
+  for (Json& row : document["scenes"]) row["parameters"] = document["parameters"];
+  return table.text(document["scenes"]);
+}
+
+compare::Document force_model_document(const ForceModelFit& fit, bool target_was_given) {
+  compare::Document document{.json = force_model_json(fit)};
+  std::string& out = document.head;
+  append(out, "worst {}", percent(fit.worst()));
   if (fit.holdouts > 0) append(out, ", of the hold-out scenes {}", percent(fit.worst_holdout()));
   append(out, " of l (RMS): the {} of {} is {}\n", target_was_given ? "target" : "default target",
          percent(fit.target), fit.reached() ? "reached" : "not reached");
@@ -95,15 +97,17 @@ std::string force_model_text(const ForceModelFit& fit, bool target_was_given) {
     append(out, "  {}\n", compare::wrap(reason, 2, 100));
   }
   append(out, "  c_c: {}\n\n", c_c_origin(fit));
-  compare::Document details{.json = force_model_json(fit)};
-  for (const char* key : {"target", "reached", "why_missed", "deviation"}) details.json.erase(key);
-  std::string& columns = details.columns["scenes"];
+  document.shown = document.json;
+  for (const char* key : {"target", "reached", "why_missed", "deviation"}) {
+    document.shown.erase(key);
+  }
+  std::string& columns = document.columns["scenes"];
   columns = "scene,gamma,holdout";
   for (const RuleDeviations& rule : fit.rules) {
     append(columns, ",{0}_over_length=rules/{0}/rms_over_length", compare::to_string(rule.rule));
   }
   columns += ",stepped_over_length=rms_over_length,steps";
-  return out + details.text();
+  return document;
 }
 
 std::string force_model_toml(const ForceModelFit& fit) {

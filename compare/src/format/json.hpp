@@ -16,6 +16,7 @@ using compare::append;
 using compare::Json;
 using compare::json_list;
 using compare::json_or_null;
+using compare::picked;
 using compare::points_json;
 using compare::text_or_null;
 using compare::to_json;

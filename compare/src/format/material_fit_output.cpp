@@ -120,23 +120,20 @@ Json shapes_json(const compare::Calibration& report) {
   return shapes;
 }
 
-}  // namespace
-
-std::string material_csv(const compare::Calibration& report) {
-  const Key stiffness = stiffness_key(report.scenes.front());
-  const Key heaviness = heaviness_key(report.scenes.front());
-  compare::CsvTable table(fmt::format(
+/// Returns the columns of the only row of CSV.
+std::string material_columns(const compare::Scene& scene) {
+  const Key stiffness = stiffness_key(scene);
+  const Key heaviness = heaviness_key(scene);
+  return fmt::format(
       "{0},low{1}=interval_95{1}/0,high{1}=interval_95{1}/1,{2},{3}_low={3}_interval_95{4}/0,"
-      "{3}_high={3}_interval_95{4}/1",
-      stiffness.text(), stiffness.unit, heaviness.text(), heaviness.name, heaviness.unit));
-  table.add(
-      "noise_m,degrees_of_freedom,rms_m,not_identified,warning,errors_are_correlated,"
-      "correlation_length_m=correlation/length_m,correlation_share=correlation/share_of_variance,"
+      "{3}_high={3}_interval_95{4}/1,noise_m,degrees_of_freedom,rms_m,not_identified,warning,"
+      "errors_are_correlated,correlation_length_m=correlation/length_m,"
+      "correlation_share=correlation/share_of_variance,"
       "interval_widened_by=correlation/interval_widened_by,"
-      "effective_degrees_of_freedom=correlation/effective_degrees_of_freedom");
-  table.add(fmt::format("{0}{1},{0}_low={0}_interval_95{1}/0,{0}_high={0}_interval_95{1}/1",
-                        torsion_key().name, torsion_key().unit));
-  return table.header() + table.row(material_json(report));
+      "effective_degrees_of_freedom=correlation/effective_degrees_of_freedom,"
+      "{5}{6},{5}_low={5}_interval_95{6}/0,{5}_high={5}_interval_95{6}/1",
+      stiffness.text(), stiffness.unit, heaviness.text(), heaviness.name, heaviness.unit,
+      torsion_key().name, torsion_key().unit);
 }
 
 Json material_json(const compare::Calibration& report) {
@@ -186,15 +183,18 @@ Json material_json(const compare::Calibration& report) {
   return result;
 }
 
-std::string material_text(const compare::Calibration& report) {
+}  // namespace
+
+compare::Document material_document(const compare::Calibration& report) {
   const compare::MaterialFit& fit = report.fit;
-  compare::Document details{.json = material_json(report)};
-  std::string out;
+  compare::Document document{.json = material_json(report)};
+  document.shown = document.json;
+  std::string& out = document.head;
   for (const ShownValue& one : fitted_values(report)) {
     const compare::NamedValue& said = one.said;
     append(out, "{:<11} {}   (scene: {:.5g}{}{})\n", said.name, value_text(one.value, said.unit),
            said.value, *said.unit == '\0' ? "" : " ", said.unit);
-    for (const std::string& key : value_keys(one.key, one.prefix)) details.json.erase(key);
+    for (const std::string& key : value_keys(one.key, one.prefix)) document.shown.erase(key);
   }
   if (!fit.assumed.empty()) {
     append(out, "            (if {} as given: errors of these may leave no residual)\n",
@@ -205,17 +205,20 @@ std::string material_text(const compare::Calibration& report) {
   append(out, "residual    {:.4g} mm between points and rod (RMS)\n", fit.rms_m * 1e3);
   if (fit.prediction) out += prediction_text(*fit.prediction);
   for (const char* key : {"assumed", "not_identified", "warning", "rms_m", "prediction"}) {
-    details.json.erase(key);
+    document.shown.erase(key);
   }
+  if (fit.camera_tilt.isZero(0)) document.shown.erase("camera_tilt_rad");
   const std::vector<std::string> stiffness = value_keys(stiffness_key(report.scenes.front()), "");
   const std::string alternative =
       fmt::format("options,prediction_rms_m,rms_m,{},{}", stiffness[0], stiffness[2]);
-  details.columns = {
+  document.columns = {
+      {"", material_columns(report.scenes.front())},
       {"alternatives", alternative},
       {"tried", alternative},
       {"shapes", "shape,scene,arc_lengths,reversed,rms_m"},
       {"chains/#/joints", "at_m,joint_stiffness_Nm_per_rad,binormal_stiffness_Nm_per_rad"}};
-  return out + "\n" + details.text();
+  out += "\n";
+  return document;
 }
 
 }  // namespace dlo::cli

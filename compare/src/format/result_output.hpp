@@ -15,6 +15,7 @@
 #include "dlo/compare/solve.hpp"
 #include "format/calibration_output.hpp"  // also needed for the output of fits
 #include "format/json.hpp"
+#include "record/csv_table.hpp"
 
 namespace dlo::cli {
 
@@ -60,7 +61,11 @@ void count_from_1(Json& contacts);
 [[nodiscard]] Json equilibria_json(const compare::AllSolutions& all, const compare::Scene& scene,
                                    const compare::Plan& plan);
 
-/// Describes a comparison for people, with a blank line after it.
+/// Whether the force model's RMS deviation is within default_tolerance().
+[[nodiscard]] bool within_limit(const compare::Comparison& comparison);
+
+/// Describes a comparison for people, with a blank line after it. Its first line is a verdict, with
+/// the largest part of the error budget if the deviation is not within_limit().
 [[nodiscard]] std::string comparison_text(const compare::Comparison& comparison);
 
 [[nodiscard]] Json comparison_json(const compare::Comparison& comparison);
@@ -87,9 +92,7 @@ struct CheckPage {
   std::string verdict = {};    ///< word for the verdict, if it is shown otherwise, as in colour
 };
 
-[[nodiscard]] std::string shape_check_text(const CheckPage& page);
-
-[[nodiscard]] Json shape_check_json(const compare::CheckResult& report);
+[[nodiscard]] compare::Document shape_check_document(const CheckPage& page);
 
 /// Returns a text as one cell of a Markdown table, with all markup escaped.
 [[nodiscard]] std::string markdown(const std::string& text);
@@ -97,17 +100,12 @@ struct CheckPage {
 /// Returns a summary in Markdown, such as for a job of continuous integration.
 [[nodiscard]] std::string shape_check_markdown(const compare::CheckResult& report);
 
-[[nodiscard]] std::string shape_check_csv(const compare::CheckResult& report);
-
-[[nodiscard]] std::string force_model_text(const compare::ForceModelFit& fit,
-                                           bool target_was_given);
+[[nodiscard]] compare::Document force_model_document(const compare::ForceModelFit& fit,
+                                                     bool target_was_given);
 [[nodiscard]] std::string force_model_csv(const compare::ForceModelFit& fit);
-[[nodiscard]] Json force_model_json(const compare::ForceModelFit& fit);
 /// Returns a parameters file for --parameters and for other programs.
 [[nodiscard]] std::string force_model_toml(const compare::ForceModelFit& fit);
 
-[[nodiscard]] std::string material_text(const compare::Calibration& report);
-[[nodiscard]] std::string material_csv(const compare::Calibration& report);
-[[nodiscard]] Json material_json(const compare::Calibration& report);
+[[nodiscard]] compare::Document material_document(const compare::Calibration& report);
 
 }  // namespace dlo::cli

@@ -46,6 +46,8 @@ std::string markdown(const std::string& text) {
   return out;
 }
 
+namespace {
+
 Json shape_check_json(const compare::CheckResult& report) {
   const compare::ShapeCheck& c = report.check;
   const std::vector<double>& s = c.reference.arc_length;
@@ -106,7 +108,9 @@ Json shape_check_json(const compare::CheckResult& report) {
   return result;
 }
 
-std::string shape_check_text(const CheckPage& page) {
+}  // namespace
+
+compare::Document shape_check_document(const CheckPage& page) {
   const compare::CheckResult& report = page.result;
   const compare::ShapeCheck& c = report.check;
   std::string out = fmt::format(
@@ -135,53 +139,35 @@ std::string shape_check_text(const CheckPage& page) {
     append(out, "  frame           found ({}): {}\n", compare::to_string(report.pose),
            pose_text(c.alignment.pose, report.scene.length));
   }
-  const Json document = shape_check_json(report);
-  compare::Document details{.json = Json::object(), .large = compare::magnitudes(report.scene)};
-  for (const char* key : {"scene", "shape", "points", "model", "notes", "arc_lengths", "seen",
-                          "movement_m", "state", "neglected"}) {
-    if (document.contains(key)) details.json[key] = document.at(key);
-  }
-  for (const char* key : {"largest_gap_at_m", "excess_m"}) details.json["seen"].erase(key);
-  for (const char* key : {"rank_of_stable", "unstable_found"}) details.json["state"].erase(key);
+  compare::Document document{
+      .json = shape_check_json(report),
+      .columns =
+          {{"",
+            "scene,shape,gamma,points,reversed,arc_lengths,from_m=seen/from_m,to_m=seen/to_m,"
+            "rms_m=deviation/rms_m,rms_over_length=deviation/rms_over_length,"
+            "rms_over_movement=deviation/rms_over_movement,max_m=deviation/max_m,"
+            "max_at_m=deviation/max_at_m,worst_point=deviation/worst_point,"
+            "tip_m=deviation/tip_m,movement_m,effective_modulus_ratio,"
+            "rms_at_effective_modulus_m,optimum,tolerance_m=tolerance/allowed_m,verdict,"
+            "seen_share=seen/share,reason,whole_rms_m=deviation/whole_rms_m,"
+            "whole_max_m=deviation/whole_max_m,significant,deflection_m"}},
+      .large = compare::magnitudes(report.scene),
+      .head = out + "\n"};
+  document.shown = picked(
+      document.json, {"scene", "shape", "points", "model", "notes", "arc_lengths", "seen/from_m",
+                      "seen/to_m", "seen/share", "seen/polyline_length_m", "seen/largest_gap_m",
+                      "movement_m", "state/energy_J", "state/energy_above_lowest_J",
+                      "state/stable_found", "state/searched", "state/others", "neglected"});
   for (const char* key : {"direction_is_clear", "turn_is_clear"}) {
-    if (!document.at(key)) details.json[key] = false;
+    if (!document.json.at(key)) document.shown[key] = false;
   }
-  return out + "\n" + details.text();
+  return document;
 }
 
 std::string shape_check_markdown(const compare::CheckResult& report) {
-  const compare::ShapeCheck& c = report.check;
-  std::string out = fmt::format("### {} {}: {}\n\n{}\n\n", report.passes() ? "\u2705" : "\u274c",
-                                compare::to_string(report.judgement.verdict), markdown(c.scene),
-                                markdown(report.judgement.reason));
-  append(out, "| | |\n|---|---|\n");
-  append(out, "| shape | {} |\n", markdown(c.file));
-  append(out, "| RMS | {:.4g} mm = {:.3g} % of l |\n", c.deviation.rms_m * 1e3,
-         c.deviation.rms_over_length * 100);
-  append(out, "| largest | {:.4g} mm at s = {:.4g} m |\n", c.deviation.max_m * 1e3,
-         c.deviation.max_at_m);
-  if (compare::is_identified(c.effective_modulus.optimum) && !report.supersedes_modulus) {
-    append(out, "| E\\*/E | {:.4g} |\n", c.effective_modulus.ratio);
-  }
-  for (const compare::Explanation& explanation : report.explanations) {
-    append(out, "| RMS {:.3g} mm if | {} |\n", explanation.rms_m * 1e3,
-           markdown(explanation.cause));
-  }
-  const std::string both = compare::other_stiffness_within(report);
-  return both.empty() ? out : out + "\n" + markdown(both) + "\n";
-}
-
-std::string shape_check_csv(const compare::CheckResult& report) {
-  const compare::CsvTable table(
-      "scene,shape,gamma,points,reversed,arc_lengths,from_m=seen/from_m,to_m=seen/to_m,"
-      "rms_m=deviation/rms_m,rms_over_length=deviation/rms_over_length,"
-      "rms_over_movement=deviation/rms_over_movement,max_m=deviation/max_m,"
-      "max_at_m=deviation/max_at_m,worst_point=deviation/worst_point,tip_m=deviation/tip_m,"
-      "movement_m,effective_modulus_ratio,rms_at_effective_modulus_m,optimum,"
-      "tolerance_m=tolerance/allowed_m,verdict,seen_share=seen/share,reason,"
-      "whole_rms_m=deviation/whole_rms_m,whole_max_m=deviation/whole_max_m,"
-      "significant,deflection_m");
-  return table.header() + table.row(shape_check_json(report));
+  return fmt::format("### {} {}: {}\n\n````\n{}````\n", report.passes() ? "\u2705" : "\u274c",
+                     compare::to_string(report.judgement.verdict), markdown(report.check.scene),
+                     shape_check_document({report}).text());
 }
 
 }  // namespace dlo::cli

@@ -176,17 +176,6 @@ std::vector<std::string*> file_names(toml::table& root) {
   return names;
 }
 
-std::optional<toml::table> document_of(const std::string& file) {
-  std::error_code unknown;
-  // A pipe can be read only once.
-  if (!std::filesystem::is_regular_file(file, unknown)) return std::nullopt;
-  try {
-    return parse_toml(read_file(file), file);
-  } catch (const InputError&) {
-    return std::nullopt;
-  }
-}
-
 /// Returns the gravity with which the scene has this gamma.
 toml::array scaled_gravity(const Scene& scene, const std::string& gamma) {
   const auto value = as_number<double>(gamma);
@@ -279,16 +268,6 @@ SceneTemplate load_scene_template(const std::string& path,
   const std::filesystem::path file(path);
   return {read_file(path), file.filename(), known_materials, MissingElements::refused,
           file.parent_path()};
-}
-
-std::vector<std::string> trajectory_files(const std::string& scene_file) {
-  std::optional<toml::table> document = document_of(scene_file);
-  std::vector<std::string> files;
-  if (!document) return files;
-  for (const std::string* const name : file_names(*document)) {
-    files.push_back(file_of_shape(path_beside(*name, scene_file)));
-  }
-  return files;
 }
 
 }  // namespace dlo::compare

@@ -48,9 +48,4 @@ class SceneTemplate {
 [[nodiscard]] SceneTemplate load_scene_template(
     const std::string& path, const std::vector<Material>& known_materials = materials());
 
-/// Returns the paths of the files that a scene's file names for reading, as the scene's reader
-/// opens them. Empty if the scene's file is not a regular file or not TOML; the scene's reader
-/// reports that.
-[[nodiscard]] std::vector<std::string> trajectory_files(const std::string& scene_file);
-
 }  // namespace dlo::compare

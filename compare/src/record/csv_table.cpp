@@ -250,14 +250,16 @@ std::string CsvTable::aligned(const Json& documents, const Magnitudes& large) co
 }
 
 std::string Document::text() const {
+  const Json& values = shown.is_null() ? json : shown;
   std::string out;
-  add_values(out, json, "", large);
-  add_tables(out, *this, json, "", "");
-  return out.starts_with('\n') ? out.substr(1) : out;
+  add_values(out, values, "", large);
+  add_tables(out, *this, values, "", "");
+  return head + (out.starts_with('\n') ? out.substr(1) : out);
 }
 
 std::string Document::csv() const {
-  return CsvTable(columns.at(table)).text(json.at(Json::json_pointer("/" + table)));
+  const CsvTable rows(columns.at(table));
+  return rows.text(table.empty() ? Json::array({json}) : json.at(Json::json_pointer("/" + table)));
 }
 
 }  // namespace dlo::compare

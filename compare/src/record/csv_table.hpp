@@ -49,12 +49,15 @@ struct Document {
   /// {{"dynamic/frames", "time_s,rms_m"}}; an empty text omits the list. Lists within a list's
   /// objects are shown only if they have columns here.
   std::map<std::string, std::string> columns = {};
-  Magnitudes large = {};   ///< magnitudes below which numbers of the text are rounding
-  std::string table = {};  ///< path of the list that is the CSV table; it has columns
+  Magnitudes large = {};  ///< magnitudes below which numbers of the text are rounding
+  /// Path of the list that is the CSV table; it has columns. Empty: the document is the only row.
+  std::string table = {};
+  std::string head = {};  ///< text for people before the values
+  Json shown = {};        ///< values of the text; null: those of `json`
 
-  /// Returns a line `name  value unit` for each value, then a table for each list of objects. Name
-  /// and unit are those of the key, such as `rms_m`. Numbers have four significant digits, shares
-  /// of the length are percentages; points and long lists of numbers are omitted.
+  /// Returns the head, a line `name  value unit` for each value, then a table for each list of
+  /// objects. Name and unit are those of the key, such as `rms_m`. Numbers have four significant
+  /// digits, shares of the length are percentages; points and long lists of numbers are omitted.
   [[nodiscard]] std::string text() const;
   [[nodiscard]] std::string csv() const;
 };

@@ -30,6 +30,15 @@ Magnitudes magnitudes(const Scene& scene) {
   return {.length = l, .force = force, .torque = force * l, .energy = force * l};
 }
 
+Json picked(const Json& document, std::initializer_list<std::string_view> paths) {
+  Json result = Json::object();
+  for (const std::string_view path : paths) {
+    const Json::json_pointer at("/" + std::string(path));
+    if (document.contains(at)) result[at] = document.at(at);
+  }
+  return result;
+}
+
 Json to_json(const Eigen::Vector3d& vector) { return {vector.x(), vector.y(), vector.z()}; }
 
 Json points_json(const Eigen::Matrix3Xd& points) {

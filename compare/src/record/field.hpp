@@ -1,6 +1,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <initializer_list>
 #include <nlohmann/json.hpp>
 #include <optional>
 #include <span>
@@ -140,6 +141,9 @@ template <typename Value>
 [[nodiscard]] inline Json text_or_null(const std::string& text) {
   return text.empty() ? Json() : Json(text);
 }
+
+/// Returns the parts of a document at paths such as "seen/share", as far as it has them.
+[[nodiscard]] Json picked(const Json& document, std::initializer_list<std::string_view> paths);
 
 [[nodiscard]] Json to_json(const Eigen::Vector3d& vector);
 [[nodiscard]] Json points_json(const Eigen::Matrix3Xd& points);

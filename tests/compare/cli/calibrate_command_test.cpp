@@ -16,6 +16,7 @@ namespace {
 
 using dlo::test::CalibrateCommand;
 using dlo::test::says;
+using dlo::test::says_none;
 using nlohmann::json;
 
 TEST_F(CalibrateCommand, FindsTheModulusOfMeasuredShapes) {
@@ -88,6 +89,7 @@ TEST_F(CalibrateCommand, StatesWhatTheShapesCannotShow) {
   const auto assumed = [&](const std::string& options) {
     return json_of(command + options).at("assumed");
   };
+  EXPECT_TRUE(says_none(run(command).out, {"camera tilt"}));
   EXPECT_EQ(assumed(""), json({"length", "weight", "scale", "vertical", "natural curvature",
                                "clamp directions"}));
   EXPECT_EQ(assumed(" --register"),

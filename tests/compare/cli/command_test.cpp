@@ -10,6 +10,7 @@
 #include <string>
 #include <vector>
 
+#include "command/commands.hpp"
 #include "command_fixture.hpp"
 #include "option/effect.hpp"
 #include "scene_text.hpp"
@@ -167,11 +168,12 @@ std::string given(const std::string& option) {
 }
 
 /// Words of a command with which all conditions of a row hold.
-std::string with_conditions(const dlo::cli::IneffectiveOptions& row, const std::string& scene) {
+std::string with_conditions(const std::string& command, const dlo::cli::IneffectiveOptions& row,
+                            const std::string& scene) {
   const std::map<std::string, std::string> arguments = {
       {"regress", scene + " --baseline b.toml"}, {"suite", "--write d"}, {"stability", ""}};
-  const auto own = arguments.find(row.command);
-  std::string line = row.command + " " + (own == arguments.end() ? scene : own->second);
+  const auto own = arguments.find(command);
+  std::string line = command + " " + (own == arguments.end() ? scene : own->second);
   for (const dlo::cli::OptionCondition& condition : row.conditions) {
     if (condition.values.empty()) continue;
     const std::string& value = condition.values.front();
@@ -184,9 +186,13 @@ std::string with_conditions(const dlo::cli::IneffectiveOptions& row, const std::
 TEST_F(Command, EveryOptionWithoutEffectIsRefusedOrReported) {
   int refused = 0;
   int stated = 0;
-  for (const dlo::cli::IneffectiveOptions& row : dlo::cli::ineffective_options()) {
-    if (row.command.empty()) continue;
-    const std::string line = with_conditions(row, steel());
+  std::vector<std::pair<std::string, dlo::cli::IneffectiveOptions>> rows;
+  for (const dlo::cli::NamedCommand& command : dlo::cli::all_commands) {
+    const std::string name(command.name);
+    for (auto& row : dlo::cli::ineffective_options(name)) rows.emplace_back(name, std::move(row));
+  }
+  for (const auto& [command, row] : rows) {
+    const std::string line = with_conditions(command, row, steel());
     for (const std::string& option : row.options) {
       const std::string all = option == "--format" ? line : line + " " + given(option);
       const std::vector<std::string> words = {

@@ -52,6 +52,10 @@ TEST_F(Command, WithoutArgumentsTellsWhatThereIsToDo) {
   for (std::string line; std::getline(lines, line);) EXPECT_LE(line.size(), 80U) << line;
 }
 
+TEST_F(Command, InitPrintsALargeModulusInGigapascal) {
+  EXPECT_TRUE(says(said("init " + path("steel") + " --material spring_steel"), {" GPa, density"}));
+}
+
 TEST_F(Command, SuggestsTheNearestWord) {
   expect_error("slove", 2, {"slove", "did you mean solve?", "regress"});
   expect_error("solve " + steel() + " --modle chain", 2, {"--modle", "did you mean --model?"});

@@ -57,7 +57,7 @@ TEST_F(RegressCommand, MayTolerateAShareOfTheDeflection) {
   EXPECT_EQ(grown_by(0.049), 0);
   EXPECT_EQ(grown_by(0.051), 1);
   expect_output(arguments_ + steel() + " --tolerance '2 mm'", 2,
-                {"2 mm is no share", "5% of deflection"});
+                {"2 mm: no share of the length", "5% of deflection"});
   EXPECT_EQ(run(arguments_ + steel() + " --tolerance 1% --absolute 1%").status, 2);
 }
 

@@ -257,7 +257,7 @@ TEST_F(SuiteCommand, WritesTheCardInEachForm) {
   EXPECT_THAT(xml, HasSubstr("tests=\"2\" failures=\"0\" errors=\"0\" skipped=\"1\""));
   EXPECT_EQ(std::system(("xmllint --noout " + path("card.xml")).c_str()), 0);
   const std::string page = read(path("card.html"));
-  EXPECT_THAT(page, HasSubstr("<p class=\"badge pass\">\u2713 1 of 2 scenes right"));
+  EXPECT_THAT(page, HasSubstr("<p class=\"badge pass\">\u2713 chain: 1 of 2 scenes right"));
   EXPECT_THAT(page, HasSubstr("weight"));
   EXPECT_EQ(page.find("<script"), std::string::npos);
   if (run_line("gnuplot --version").status == 0) EXPECT_THAT(page, HasSubstr("<svg role=\"img\""));
