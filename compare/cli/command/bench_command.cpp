@@ -38,6 +38,7 @@ void run(const BenchOptions& options) {
     return compare::run_benchmark(scenes, benchmark,
                                   [&](const std::string& what) { bar.stage(what); });
   }();
+  for (const std::string& note : report.notes) say("{}", note);
   write_output(options.output, benchmark_document(report),
                {{"csv", [&] { return benchmark_csv(report); }}});
   options.plot.draw([&] {

@@ -324,6 +324,7 @@ MeasuredCase measure_program(const Scene& scene, const ForeignProgram& program,
   const SimulatorRun run = run_foreign(program, scene, entry.points, options.time_limit);
   result.problem = run.problem;
   if (!run.shape) return result;
+  result.note = fmt::format("{}", fmt::join(run.shape->notes, "; "));
   const energy_model::Equilibrium energy = solve_reference(scene, options);
   try {
     entry.errors = errors_of(scene, foreign_deviation(scene, *run.shape, energy.sample));
@@ -360,6 +361,7 @@ std::vector<RegressionResult> judge_regression(const std::vector<BaselineCase>& 
     const auto known = expected.find(name);
     judge_case(results[name], measurement, known == expected.end() ? nullptr : known->second,
                tolerance);
+    if (!measurement.note.empty()) results[name].message += "; " + measurement.note;
   }
   std::vector<RegressionResult> sorted;
   for (auto& [name, result] : results) {

@@ -91,6 +91,7 @@ struct RegressionResult {
 struct MeasuredCase {
   BaselineCase entry;   ///< has no errors if the case was not solved
   std::string problem;  ///< message of the solver; empty if there is none
+  std::string note;     ///< how the shape was interpreted; empty: as it is
   /// TrivialShape::deflection_m divided by the length if the tolerance is a fraction of it, else 1.
   double deflection_share = 1;
 };

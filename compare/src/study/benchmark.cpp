@@ -317,6 +317,7 @@ BenchmarkReport run_benchmark(const std::vector<Scene>& scenes, const BenchmarkO
     scene.runs = static_runs.runs();
     const std::vector<BenchmarkFailure>& failures = static_runs.failures();
     report.failures.insert(report.failures.end(), failures.begin(), failures.end());
+    report.notes.insert(report.notes.end(), static_runs.notes().begin(), static_runs.notes().end());
     mark_front(scene.runs);
     mark_front(scene.tracking);
     for (const double error : {0.1, 0.01, 1e-3, 1e-6}) {

@@ -111,7 +111,9 @@ struct BenchmarkReport {
   std::vector<SceneBenchmark> scenes;  ///< results in the given order
   std::vector<std::string> skipped;  ///< runs that did not fit into the budget or did not converge
   std::vector<BenchmarkFailure> failures;  ///< failed runs of programs, in the order of the runs
-  double seconds = 0;                      ///< wall time of the benchmark [s]
+  /// How the first shape of each program was interpreted, one line each.
+  std::vector<std::string> notes;
+  double seconds = 0;  ///< wall time of the benchmark [s]
 };
 
 /// Sets BenchmarkRun::front of the runs that no other run beats. A run beats another if neither its

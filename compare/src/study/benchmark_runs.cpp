@@ -215,10 +215,18 @@ void StaticRuns::run(StaticSeries& series, int size) {
                               ? reference_.agreement
                               : error_of(scene_, solved.shape, reference_.rod);
   }
-  run.evaluations = solved.evaluations;
-  run.time = *time;
-  series.last_s = time->median_s;
-  series.last_size = size;
+  if (!problem.empty()) {
+    failures_.push_back({scene_.name, series.program->name, points, std::move(problem)});
+    return;
+  }
+  if (series.last_points == 0) {
+    for (const std::string& note : result.shape->notes) {
+      notes_.push_back(fmt::format("{}: {}: {}", scene_.name, run.program, note));
+    }
+  }
+  run.time = timing_of(std::move(times));
+  series.last_s = run.time.median_s;
+  series.last_points = points;
   series.runs.push_back(std::move(run));
 }
 

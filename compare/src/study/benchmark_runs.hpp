@@ -81,6 +81,8 @@ class StaticRuns {
   [[nodiscard]] std::vector<BenchmarkRun> runs() const;
   /// Returns the failed runs of programs so far.
   [[nodiscard]] const std::vector<BenchmarkFailure>& failures() const { return failures_; }
+  /// Returns how the shapes of programs were interpreted, one line each.
+  [[nodiscard]] const std::vector<std::string>& notes() const { return notes_; }
 
  private:
   void run(StaticSeries& series, int size);
@@ -91,6 +93,7 @@ class StaticRuns {
   Stopwatch& watch_;
   std::vector<StaticSeries> series_;
   std::vector<BenchmarkFailure> failures_;
+  std::vector<std::string> notes_;
 };
 
 }  // namespace dlo::compare

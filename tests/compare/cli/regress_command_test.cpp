@@ -83,6 +83,17 @@ TEST_F(RegressCommand, AProgramThatIsNotGivenIsAskedFor) {
   succeeds(arguments_ + steel() + with);
 }
 
+TEST_F(RegressCommand, AnEndThatIsAppendedToAProgramsPointsIsStatedHereAndByBench) {
+  write("starts.sh",
+        "for i in 0 0625 125 1875 25 3125 375 4375; do echo \"0.$i,0,0\"; done >\"$1\"\n");
+  const std::string file =
+      scene("gravity = [0, -9.81, 0]\n" + dlo::test::steel_rod + dlo::test::level_clamp);
+  const std::string with = file + " --with \"mine=sh " + path("starts.sh") + " {shape}\"";
+  const std::string note = "8 points are the start points of the segments; the end of the last";
+  expect_output(arguments_ + with, 1, {"not in the baseline (--update adds it); its " + note});
+  expect_output("bench --seconds 1 --repeats 1 " + with, 0, {": mine: its " + note});
+}
+
 TEST_F(RegressCommand, UpdateSaysWhatItDid) {
   EXPECT_EQ(run(arguments_ + steel() + " --update").out.substr(0, 5), "same ");
   const std::string both = run(arguments_ + steel() + " " + other + " --update").out;
