@@ -70,7 +70,7 @@ class Command : public Folder {
     EXPECT_TRUE(says(result.out + result.err, words)) << arguments;
   }
 
-  /// Runs a command for the files that it writes; it has to end well.
+  /// Runs a command for the files that it writes, and expects exit status 0.
   void succeeds(const std::string& arguments) const { (void)said(arguments); }
 
   /// Returns the document that a command writes.

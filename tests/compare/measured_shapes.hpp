@@ -61,7 +61,7 @@ inline Eigen::Matrix3Xd correlated_noise(const std::vector<double>& s, double si
   return noise;
 }
 
-/// Whether an interval does; an open side holds all.
+/// Whether an interval contains the true value; a missing bound is infinite.
 inline bool holds(const compare::FittedValue& value, double truth) {
   return (!value.low || *value.low <= truth) && (!value.high || *value.high >= truth);
 }

@@ -51,7 +51,7 @@ constexpr double time_limit = 10;            // of a solve [s]
 constexpr double clearly = 1.1;              // factor on the tolerance of what is certainly wrong
 constexpr double tolerated_failures = 0.01;  // share of right files that may fail
 
-/// The classes of scenes, drawn in turn.
+/// The classes of scenes, used in turn.
 constexpr std::array kinds = {"one clamp",     "between grips", "rigid body",
                               "yielding body", "twisted",       "stretch"};
 
@@ -216,7 +216,8 @@ class Verdicts {
   }
 
  private:
-  /// A shape that a solver does not find, or a scene that a model does not have, is no trial.
+  /// Runs an action. Nothing is counted if a solver does not converge or a model does not accept
+  /// the scene.
   template <typename Action>
   static void attempt(const Action& action) {
     try {
@@ -359,7 +360,8 @@ class Verdicts {
       return to_string(verdict);
     }
     if (!failed) {
-      // An equilibrium that only the search from the file finds makes a file right.
+      // A file is correct if it is near an equilibrium, even one that only a search from the file
+      // finds.
       if (!is_away) return "";
       ++(passed ? tally.wrong_pass : tally.wrong_other);
       return to_string(verdict);

@@ -22,7 +22,7 @@ inline const std::string first_pin = gripper_text("hold = \"pin\"");
 inline const std::string steel_rod =
     "[rod]\nlength = \"50 cm\"\ndiameter = \"2 mm\"\nmaterial = \"spring_steel\"\n";
 
-/// Returns the error in a scene's text, or "no error".
+/// Returns the message with which a scene's text is refused, or "no error".
 inline std::string scene_error(const std::string& text) {
   return error_of<compare::InputError>([&] { return compare::parse_scene(text, "my.toml"); });
 }

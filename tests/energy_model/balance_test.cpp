@@ -118,7 +118,8 @@ bool is_refused(const Problem& problem, Equilibrium shape) {
   return has_lost_balance(shape) && shape.message.find("and moment") != std::string::npos;
 }
 
-// Errors of ten times the allowed imbalance, of every grip, contact and obstacle.
+// Each force and torque in turn is changed by ten times the allowed imbalance: of grips, contacts
+// and obstacles.
 TEST(Balance, IsLostWithEveryForceAndTorqueThatIsReturned) {
   constexpr double share = 10 * allowed_imbalance;
   for (const BalancedRod& rod : balanced_rods()) {
@@ -185,8 +186,8 @@ TEST(Balance, IsLostWithEverythingThatActsOnTheRod) {
   }
 }
 
-// Two terms leave an error in where contact with a soft peg begins; shooting with a loose tolerance
-// does not resolve natural strains of a high order.
+// Both results are too inaccurate to be in balance. Two terms do not resolve where contact with a
+// soft peg begins; a loose shooting tolerance does not resolve natural strains of high order.
 TEST(Balance, IsRequiredOfResultsOfBothModels) {
   Problem peg = heavy_cantilever(12, 0);
   peg.obstacles = {{obstacle::Body::cylinder({0.5, -0.4, 0}, {0, 0, 1}, 0.1), 130}};

@@ -12,8 +12,8 @@
 namespace dlo::energy_model {
 namespace {
 
-// Between two clamps in a plane three constraints fix all that three terms leave free: there is no
-// direction in which a fold could be searched for.
+// Between two clamps in a plane, three constraints determine the three unknowns. No direction is
+// left in which a fold could be searched for.
 TEST(Certify, AcceptsAShapeWithoutFreeUnknowns) {
   Span span;
   span.planar = true;
@@ -42,8 +42,8 @@ Span spatial_arch(double lean) {
   return span;
 }
 
-// The eigenvalues are those at the shape itself, whichever point the factor that comes with it is
-// of.
+// The eigenvalues are those at the shape itself, even if the stored factor belongs to another
+// point.
 TEST(Certify, UsesTheFactorAtTheShapeItself) {
   SpanWorkspace workspace;
   NewtonFactors& factors = workspace.factors();
@@ -117,8 +117,8 @@ TEST(Certify, CallsAShapeWhoseNextStepIsNotSmallUndetermined) {
   }
 }
 
-// Beyond its buckling load the upright shape is a saddle, but not known to be one from a shape
-// whose next step is not small.
+// Above its buckling load the upright shape is a saddle. A nearby shape whose next Newton step is
+// not small does not prove this.
 TEST(Certify, CallsASaddleWhoseNextStepIsNotSmallUndetermined) {
   Span span = nearly_buckling();
   span.planar = true;
@@ -136,7 +136,7 @@ TEST(Certify, CallsASaddleWhoseNextStepIsNotSmallUndetermined) {
   EXPECT_EQ(moved.status, SolveStatus::near_singular);
 }
 
-/// A shape between clamps, whose multipliers are not zero.
+/// Returns a converged shape between clamps, whose multipliers are not zero.
 SpanSolution arch_at_rest(SpanWorkspace& workspace) {
   SpanSolution solution =
       std::move(solve_span(spatial_arch(0.3), SpanOptions(), workspace).front());
@@ -144,8 +144,8 @@ SpanSolution arch_at_rest(SpanWorkspace& workspace) {
   return solution;
 }
 
-// Forces of the grips that are off by 1e-7 of all forces leave a residual, but no step of the
-// shape.
+// Grip forces with an error of 1e-7 of all forces leave a residual, but the Newton step does not
+// move the shape.
 TEST(Certify, RejectsAResidualAboveItsLimit) {
   SpanWorkspace workspace;
   const SpanSolution solution = arch_at_rest(workspace);
@@ -171,8 +171,7 @@ TEST(Certify, RejectsGripsThatPullWithoutBound) {
   EXPECT_EQ(solution.message, "the reactions of the grips are unbounded");
 }
 
-// A status by which Newton's method has not determined or not found an equilibrium is kept,
-// whatever the shape.
+// certify() keeps a status by which Newton's method has not found or not determined an equilibrium.
 TEST(Certify, ClaimsNoMoreThanTheSearch) {
   SpanWorkspace workspace;
   const SpanSolution solution = arch_at_rest(workspace);
@@ -202,8 +201,8 @@ SpanSolution straight_through(const obstacle::Body& body, double stiffness) {
   return straight_in(span);
 }
 
-// Through the axis of a soft cylinder and along the middle plane of a soft box the energy decreases
-// to both sides, which nodes away from the axis do not show.
+// A rod through the axis of a soft cylinder, or in the middle plane of a soft box, is unstable: the
+// energy decreases to both sides. Nodes that are not on the axis do not show this.
 TEST(Certify, CallsNoShapeStableThatPassesTheMiddleOfAYieldingBody) {
   SpanWorkspace workspace;
   using obstacle::Body;

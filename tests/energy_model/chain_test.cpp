@@ -73,10 +73,10 @@ double unit_moment(JointLaw law, double alpha) {
   return 2 * t * (1 + t * t);
 }
 
-// Two segments, the first one held along x, and a force at the end that is rotated from x by phi.
-// The shape with the joint at alpha is a minimum in the plane. A rotation of the second segment
-// about x by a small angle p changes no joint and the energy by F L sin(alpha) sin(phi) p^2 / 2: it
-// is a minimum in space for phi < pi, and beyond pi it is none.
+// Two segments: the first one is held along x, and a force at the end is rotated from x by phi. The
+// shape with the joint angle alpha is a minimum in the plane. Rotating the second segment about x
+// by a small angle p does not change the joint angle and changes the energy by F L sin(alpha)
+// sin(phi) p^2 / 2. The shape is therefore a minimum in space for phi < pi, and a saddle beyond.
 TEST_P(ChainOfEveryLaw, IsASaddleWhereItLeavesThePlane) {
   constexpr double alpha = 1.5;
   constexpr double pi = std::numbers::pi;

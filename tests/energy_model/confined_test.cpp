@@ -1,5 +1,5 @@
-// Rods that cannot leave their plane: equilibria of the free rod all the same, as the other solver
-// confirms, stable in the plane and only there.
+// Tests of rods that are confined to their plane. Their shapes are equilibria of the free rod too,
+// as the other solver confirms, but stable only in the plane.
 
 #include <gtest/gtest.h>
 
@@ -52,7 +52,7 @@ TEST(ConfinedRod, IsAnEquilibriumThatIsUnstableWhereNothingConfinesIt) {
   }
 }
 
-// In the plane it is found as the free one is where that stays.
+// If the free rod is stable in its plane, the confined rod has the same shape.
 TEST(ConfinedRod, IsTheFreeOneWhereThatStaysInItsPlane) {
   for (const Problem& problem : {test::heavy_cantilever(12, 30), test::two_clamps(40, 0.7)}) {
     const Equilibrium free = solve_energy(problem);

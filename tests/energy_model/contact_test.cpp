@@ -28,7 +28,7 @@ namespace {
 class LyingRod {
  public:
   LyingRod(double gamma, double height) : gamma_(gamma) {
-    // From small slopes on, where beam theory holds, higher and higher.
+    // Continuation in the height: it starts at small slopes, where beam theory is accurate.
     double h = std::min(height, 1e-3);
     Eigen::Vector2d unknown(std::pow(72 * h / gamma, 0.25), 0);
     unknown[1] = gamma * unknown[0] / 3;
@@ -65,7 +65,8 @@ class LyingRod {
     }
   }
 
-  /// Angle and height missed at the start; Runge-Kutta 4 backwards from the touch-down.
+  /// Returns the errors of angle and height at the start, by Runge-Kutta 4 backwards from the
+  /// touch-down.
   Eigen::Vector2d shoot(const Eigen::Vector2d& unknown, double height) {
     using State = Eigen::Array4d;  // theta, theta', x, y
     const auto rate = [&](double back, const State& z) {
@@ -113,7 +114,7 @@ TEST(Contact, LyingRodIsThatOfTheElastica) {
   EXPECT_GE(looked, 11);
 }
 
-// A rod that is clamped level on the floor needs no force of the clamp.
+// A rod that is clamped level on the floor exerts no force on its clamp: the floor carries it.
 TEST(Contact, AClampOnTheFloorCarriesNothingOfWhatLies) {
   for (const double at : {0.0, 1.0}) {
     SCOPED_TRACE(at);
@@ -129,7 +130,7 @@ TEST(Contact, AClampOnTheFloorCarriesNothingOfWhatLies) {
   }
 }
 
-// A rod does not know from which end it is counted.
+// The equilibrium does not depend on the end from which arc lengths are counted.
 TEST(Contact, ReversedRodRestsAsTheOther) {
   for (unsigned seed = 0; seed < 12; ++seed) {
     const Problem problem = random_touching_problem(100 + seed, seed % 2 == 0, 100);
@@ -141,7 +142,7 @@ TEST(Contact, ReversedRodRestsAsTheOther) {
     const Equilibrium there = solve_energy(problem);
     const Equilibrium back = solve_energy(reversed);
     if (!succeeded(there.status) || !succeeded(back.status)) continue;
-    // Else they are two minima.
+    // If the energies differ, the two shapes are different minima.
     const double scale = 1 + problem.weight_per_length.norm();
     if (std::abs(there.energy.total() - back.energy.total()) > 1e-3 * scale) continue;
     SCOPED_TRACE("seed " + std::to_string(seed));
@@ -157,7 +158,7 @@ TEST(Contact, ReversedRodRestsAsTheOther) {
   }
 }
 
-// A search whose time is over returns what it has computed, at any stage.
+// A search that reaches its time limit at any stage returns finite numbers.
 TEST(Contact, EndsWithNumbersWheneverTheTimeEnds) {
   Problem problem;
   problem.length = 1;
@@ -189,14 +190,15 @@ TEST(Contact, OutOfReachChangesNothing) {
   EXPECT_EQ(free.evaluations, without.evaluations);
 }
 
-// From a rod that touches at a point: kept there, the obstacle would pull with three times the way
-// over l^3, in EI/l^2, at the tip.
+// One of the initial guesses touches the obstacle at a point. If contact were kept after the
+// obstacle has moved away, the obstacle would pull at the tip with 3 d EI / l^3, where d is the
+// distance moved.
 TEST(Contact, APointIsReleasedByAnObstacleThatMovesAway) {
   const Problem free = heavy_cantilever(0.3, 0);
   const double reach = -test::point_at(solve_energy(free), 1).y();
   const std::vector<double> at = equal_arc_lengths(free.length, 10001);
   const Eigen::Matrix3Xd alone = solve_energy(free).sample(at).points;
-  // Where the peg's top has to be for its surface to be next to the rod.
+  // Returns the distance of the unloaded rod from a peg whose top is at y = -top; < 0 inside.
   const auto from_peg = [&](double top) {
     const Eigen::Vector3d centre(0.7, -top - 0.1, 0);
     return (alone.colwise() - centre).colwise().norm().minCoeff() - 0.1;

@@ -236,7 +236,8 @@ TEST(Turns, OfACurvedRodAreOfTheClassThatItsClampsHold) {
   }
 }
 
-/// The lowest shapes of these two have passed through themselves. Higher ones keep their turns.
+/// The equilibria of lowest energy of these two rods have lost turns by passing through themselves.
+/// Equilibria of higher energy have the prescribed turns.
 TEST(Turns, OfACurvedRodAreKeptByAHigherShape) {
   std::mt19937 random(31);
   for (int i = 0; i <= 26; ++i) {
@@ -248,7 +249,8 @@ TEST(Turns, OfACurvedRodAreKeptByAHigherShape) {
   }
 }
 
-/// One turn more is held by the other class.
+/// Rotating the second clamp by a full turn selects the other homotopy class. In both classes the
+/// equilibrium has all turns that the clamps prescribe.
 TEST(Turns, OfAHelixChangeByOneWithTheClamps) {
   Problem problem = rolled({0.17, -0.26, 0.2}, {-0.69, 0.51, -0.52}, 0);
   problem.natural_strains = {{3.9, 0, -0.3}};

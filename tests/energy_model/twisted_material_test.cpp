@@ -86,7 +86,7 @@ TEST(TwistedMaterial, TurnsEvenlyAndBySectionsAsTheirTorsionalStiffnessesSay) {
 }
 
 TEST(TwistedMaterial, GoesOnWithoutTwistBesideWhatIsTwisted) {
-  // The rod sticks out of both clamps, and a third clamp holds none.
+  // The rod extends beyond both clamps, where it is not twisted.
   Problem problem = rolled_section(2);
   problem.grips[0].at = 0.2;
   problem.grips[1].at = 0.8;

@@ -26,7 +26,7 @@ TEST_F(CalibrateCommand, TellsTheJointsOfAChain) {
   EXPECT_NEAR(chains[2].at("over_bending_stiffness_per_length"), 1, 0.02);
   expect_error(words({"calibrate", a, "--shape", path("a.csv"), "--segments 3"}), 2,
                {"--segments", "3"});
-  // The chain of the scene's own rod, which is also the rod of the shape.
+  // The chain approximates the rod of the scene, and the shape is that of the same rod.
   const std::string own = words({"calibrate", a, "--segments 12"});
   const json bare = json_of(own).at("chains");
   ASSERT_EQ(bare.size(), 3U);

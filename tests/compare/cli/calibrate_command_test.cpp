@@ -146,7 +146,7 @@ TEST_F(CalibrateCommand, AColumnSInMetresBesideMillimetresIsRead) {
         json_of(words({"calibrate", guess, "--shape", file, "--unit mm --arc-lengths file"}));
     EXPECT_NEAR(fit.at("youngs_modulus_Pa"), 5e9, 1e6) << along;
   }
-  // Neither millimetres nor metres: s must be at least as long as the polyline.
+  // s is neither in metres nor in millimetres: it is shorter than the polyline in either unit.
   expect_error(words({"calibrate", guess, "--shape", scaled("cm.csv", 1e3, 1e-2), "--unit mm"}), 2,
                {"cm.csv: s: spans", "--unit"});
 }

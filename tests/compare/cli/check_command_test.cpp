@@ -47,7 +47,8 @@ TEST_F(CheckCommand, ReadsWhatSolveWrites) {
 
 TEST_F(CheckCommand, ExitStatusIsTheVerdict) {
   const std::string file = solved_file(steel() + " --model chain");
-  // The paper's law is 21 % of the length off, at most 226 mm.
+  // The shape of the paper's law has an RMS deviation of 21 % of the length, and a largest
+  // deviation of 226 mm.
   const std::string check = "check " + steel() + " --shape " + file;
   succeeds(check);
   for (const std::string share : {"22%", "0.22"}) succeeds(check + " --tolerance " + share);
@@ -103,7 +104,7 @@ TEST_F(CheckCommand, APassBesideAnotherStiffnessSaysWhyBothHold) {
   const std::string soft = level_rod(1, 0.5, 0.1);
   const std::string words = "E*/E = 1.2 does not contradict the verdict: ";
   expect_output("check " + soft + " --tolerance 10% --shape " + file, 0, {"pass: ", words});
-  // Where it fails, E* is the explanation.
+  // If the shape fails, E* is among the explanations, and the hint is not printed.
   const std::string narrow = run("check " + soft + " --tolerance 0.1% --shape " + file).out;
   EXPECT_TRUE(says_none(narrow, {words}));
 }
@@ -123,7 +124,7 @@ TEST_F(CheckCommand, TheReportIsOnePage) {
   EXPECT_TRUE(says_none(html, {"a<b>", "src=\"http", "href=\"http", "@import", "url("}));
   succeeds(check + compare::shell_word(solved) + " --tolerance 30%");
   EXPECT_TRUE(says(read(page), {"<p class=\"badge pass\">"}));
-  // Over one of its inputs it is not written.
+  // The report must not overwrite an input file.
   expect_error(check + page, 2, {"is read too"});
 }
 
@@ -165,7 +166,7 @@ TEST_F(CheckCommand, AStretchedOrCutRopeFailsAndIsNamed) {
 }
 
 TEST_F(CheckCommand, WhatIsNotThereIsEmptyOrNull) {
-  // The tip is not seen, and the rod does not move.
+  // The file does not contain the tip, and gravity does not deflect the rod.
   const std::string check = "check " + std::string(DLO_DATA) +
                             "/failures/check_hang.toml --shape " +
                             shape("x,y\n0,0\n0,-0.4\n0,-0.8\n") + " --tolerance 1% --format";
@@ -199,7 +200,8 @@ TEST_F(CheckCommand, CalibrateTakesNoChordLengths) {
 }
 
 TEST_F(CheckCommand, ShapesComeInAnyUnitAndFrame) {
-  // Millimetres, without s, moved by a metre and turned by a quarter about the vertical.
+  // The points are in millimetres, have no s, and are translated by a metre and rotated by 90
+  // degrees about the vertical.
   std::vector<std::vector<double>> moved = solved_points(steel() + " --model exact --samples 9");
   for (std::vector<double>& row : moved) row = {1e3 * row[0] + 1000, 1e3 * row[1], 0};
   const std::string check = "check " + steel() + " --shape " +
@@ -212,7 +214,8 @@ TEST_F(CheckCommand, ShapesComeInAnyUnitAndFrame) {
 }
 
 TEST_F(CheckCommand, AWrongUnitIsNoPass) {
-  // The whole rod in metres, declared as millimetres: half a millimetre next to the gripper.
+  // The file contains the whole rod in metres. Read as millimetres it is half a millimetre of
+  // polyline at the gripper.
   std::vector<std::vector<double>> points = solved_points(steel() + " --model exact --samples 9");
   const std::string check =
       "check " + steel() + " --shape " + write_table("metres.csv", "x,y,z", points);
@@ -223,7 +226,8 @@ TEST_F(CheckCommand, AWrongUnitIsNoPass) {
   EXPECT_LT(document.at("seen").at("share").get<double>(), 0.01);
   succeeds(check + " --unit mm --tolerance 1% --min-seen 0.01%");
   succeeds(check + " --tolerance 1%");
-  // Files with arc lengths say that they are too long, others fail and give a hint.
+  // A file with arc lengths beyond the rod is refused; a file without arc lengths fails and gets a
+  // hint.
   expect_error("check " + steel() + " --shape " + shape("x,y,s\n0,0,0\n-500,0,500\n"), 2,
                {"s = 500 m", "--unit"});
   for (std::vector<double>& row : points) {

@@ -52,7 +52,8 @@ TEST_F(Command, PaperHasTheSameNumbersInJsonAndInCsv) {
   ASSERT_EQ(document.at("cases").size(), 6U);
   EXPECT_NEAR(document.at("cases")[0].at("effective_modulus_ratio"), 0.0285, 0.5001e-4);
   const json& moving = document.at("moving");
-  // The eleven of Tables 2 to 4, and their five movements with three more steppers.
+  // The rows are the eleven experiments of Tables 2 to 4, and their five movements with three more
+  // steppers each.
   ASSERT_EQ(moving.at("rows").size(), 26U);
   // The average forces of Tables 2 and 4 are met within 10 % RMS with c_F and l_s in centimetres.
   const auto scanned = [&](int row, const char* key) { return moving.at("scan")[row].at(key); };
@@ -101,7 +102,8 @@ TEST_F(Command, BenchWritesRowsAndAnswers) {
   const std::string arguments = "bench " + steel() + " --seconds 0.5 --repeats 1";
   const json document = json_of(arguments);
   EXPECT_EQ(document.at("schema"), "dlo/bench/2");
-  // The number of runs within half a second depends on the machine; the others are named.
+  // The number of runs within half a second depends on the machine; the other runs are listed as
+  // skipped.
   EXPECT_GT(document.at("runs").size() + document.at("skipped").size(), 5U);
   for (const json& row : document.at("runs")) {
     for (const char* key :

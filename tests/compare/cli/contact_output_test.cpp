@@ -108,7 +108,7 @@ TEST_F(ContactCommand, AllModelsTouchTheSameBodies) {
 }
 
 TEST_F(ContactCommand, SolveSaysWhereARodCrossesItself) {
-  // Only its natural curvature bends it, by more than one turn.
+  // The rod has no load; its natural curvature alone bends it by more than one turn.
   const std::string loop =
       write("loop.toml",
             "gravity = [0, 0, 0]\n[rod]\nlength = 1\ndiameter = \"2 mm\"\nmaterial = \"nitinol\"\n"

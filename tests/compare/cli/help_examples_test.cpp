@@ -30,7 +30,7 @@ class Reference : public Command {
     return run_line("bash " + path("script"));
   }
 
-  /// Returns all matches of the first group.
+  /// Returns what the first group of the pattern captures in each match.
   [[nodiscard]] static std::vector<std::string> matches(const std::string& text,
                                                         const std::string& pattern) {
     std::vector<std::string> found;
@@ -48,7 +48,7 @@ class Reference : public Command {
 };
 
 TEST_F(Reference, EveryExampleOfEveryHelpWorks) {
-  // Longer than all others together: command_test runs just this one.
+  // This example takes longer than all others together; command_test runs it instead.
   const std::map<std::string, std::string> elsewhere = {
       {"paper", "dlo paper --format json -o paper.json"}};
   const std::vector<std::string> all = commands();

@@ -111,7 +111,7 @@ TEST_F(Command, InitNeverOverwritesUnasked) {
   const std::string file = scene("mine");
   expect_error("init " + file, 2, {file, "exists", "--force"});
   EXPECT_EQ(read(file), "mine");
-  // A wrong value leaves no file, nor half of one, and the old one as it was.
+  // A wrong value creates no file, leaves no incomplete file, and does not change an existing one.
   expect_error("init --force " + file + " --length '2 feet'", 2,
                {"--length", "feet", "m, cm, mm, um"});
   EXPECT_EQ(read(file), "mine");
@@ -126,7 +126,7 @@ TEST_F(Command, InitTakesAnyNameAndNamesTheOptionThatIsWrong) {
   for (const std::string name : {"2025", "nan", "it's", "a \"b\""}) {
     const std::string quoted = name == "it's" ? "it\\'s" : "'" + name + "'";
     const std::string result = said("init " + path("") + quoted);
-    // The command that the text gives is one that a shell takes.
+    // A shell accepts the command that the text recommends.
     const std::size_t at = result.find("dlo solve ") + 4;
     EXPECT_EQ(run(result.substr(at, result.find("      ", at) - at)).status, 0) << result;
   }

@@ -35,9 +35,9 @@ std::string model_text(const std::string& name) {
   return {std::istreambuf_iterator<char>(stream), {}};
 }
 
-/// The model's segments at rest: springs linear in the angle, each segment's weight half at each of
-/// its ends, as a rigid segment's is that is uniform; where a clamp holds a body, both its ends
-/// are.
+/// Returns the points of the model's segments at rest. The springs are linear in the angle. Half of
+/// the weight of each segment acts at each of its ends, as for a uniform rigid segment. If a clamp
+/// holds a body, both ends of the body are fixed.
 Eigen::Matrix3Xd chain_at_rest(const dlo::compare::Scene& scene) {
   const Eigen::Index n = scene.model->segments;
   const double h = scene.length / static_cast<double>(n);
@@ -70,7 +70,7 @@ Eigen::Matrix3Xd chain_at_rest(const dlo::compare::Scene& scene) {
 
 class MjcfCommand : public Command {
  protected:
-  /// The places of a model's bodies at rest, without the end of the last.
+  /// Writes the positions of a model's bodies at rest, without the end of the last body.
   std::string starts(const std::string& name) {
     const Eigen::Matrix3Xd points = chain_at_rest(dlo::compare::load_scene(model(name)));
     std::vector<std::vector<double>> rows;

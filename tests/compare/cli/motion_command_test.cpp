@@ -61,14 +61,14 @@ TEST_F(MotionCommand, CheckJudgesMarkersByTheRodThatIsAsked) {
   expect_output(check(tolerance + " --dynamic --damping 0.01"), 0, {"pass: RMS", " with_inertia"});
   expect_output(check(tolerance + " --damping 0.01"), 1,
                 {"the rod has inertia (--dynamic)", "fail: RMS"});
-  // No tolerance was given.
+  // Without a tolerance the command succeeds, but the report shows the verdict "fail".
   const std::string markers = path("markers.csv");
   succeeds(check(markers + " --report " + path("page.html")));
   EXPECT_THAT(read(path("page.html")), HasSubstr("<p class=\"badge fail\">"));
   expect_error(check(markers + " --report " + markers), 2, {"markers.csv"});
 }
 
-// Three terms resolve no equilibrium of so soft a rod.
+// With three terms no equilibrium of such a soft rod is resolved.
 TEST_F(MotionCommand, CheckOfARodWithInertiaNeedsNoEquilibria) {
   write_markers("markers.csv");
   write("swung.toml", swung(1e-4));
@@ -114,7 +114,8 @@ TEST_F(MotionCommand, CheckRefusesBadRecordingsInOneLine) {
 }
 
 TEST_F(MotionCommand, MeasuredPosesAreSmoothedBelowTheirCutoff) {
-  // A way along a line, with errors of a millimetre from row to row: at half the rate.
+  // The path is a line with an error of +-1 mm that alternates from row to row, at half the
+  // sampling rate.
   std::string rows = "time,x,y,z\n";
   for (int k = 0; k <= 200; ++k) {
     rows += fmt::format("{},{},0,0\n", 0.01 * k, 1e-3 * k + (k % 2 == 0 ? 1e-3 : -1e-3));
@@ -148,7 +149,7 @@ TEST_F(MotionCommand, CalibrateFindsTheStiffnessThatMovedTheMarkers) {
   EXPECT_EQ(document.at("schema"), "dlo/motion_fit/1");
   EXPECT_NEAR(document.at("stiffness").at("value"), 0.02, 1e-4);
   EXPECT_NEAR(document.at("damping_s").at("value"), 0.01, 1e-3);
-  // The markers moved without these.
+  // The simulation of the markers had no drag of either kind.
   for (const char* none : {"drag_N_s_per_m2", "quadratic_drag_N_s2_per_m3"}) {
     EXPECT_EQ(document.at(none).at("value"), nullptr) << none;
     EXPECT_EQ(document.at(none).at("low"), 0) << none;
@@ -169,11 +170,11 @@ TEST_F(MotionCommand, WhatCalibrateWritesMakesTheMotionRight) {
                   "--tolerance 0.01%" + as_found}));
   const std::string track = words({"track", path("softer.toml"), "--no-force --frame-rate 40"});
   EXPECT_NEAR(json_of(track + as_found).at("dynamic").at("damping_s"), 0.01, 1e-3);
-  // An option counts more than the file.
+  // An option overrides the value from the file.
   EXPECT_EQ(json_of(track + as_found + " --damping 0.2").at("dynamic").at("damping_s"), 0.2);
 }
 
-// A point that the clamp carries moves alike with every stiffness.
+// The only marker is at the clamp, where the motion does not depend on the stiffness.
 TEST_F(MotionCommand, CalibrateReportsAStiffnessThatIsNotIdentifiedWithExitStatusThree) {
   write("clamped.csv",
         "time,s,x,y,z\n0.02,0,0.0013,0.0003,0\n0.1,0,0.02593,0.00519,0\n0.2,0,0.0741,0.0148,0\n");
@@ -190,7 +191,7 @@ TEST_F(MotionCommand, CalibrateReportsAStiffnessThatIsNotIdentifiedWithExitStatu
 TEST_F(MotionCommand, ARecordingIsAStartForTrack) {
   write_markers("markers.csv");
   const std::string released = swung(0.02) + "[track]\nstart = \"start.csv\"\n";
-  // The recording from its fifth row on, with which the motion continues as before.
+  // The recording from time 0.1 s on. Its start values continue the motion of the whole recording.
   std::string later = "time,s,x,y,z\n";
   std::istringstream rows(read(path("markers.csv")));
   std::string row;
@@ -210,7 +211,8 @@ TEST_F(MotionCommand, ARecordingIsAStartForTrack) {
                {"track.start", "no such file beside the scene"});
 }
 
-// After the scene's motion, and within less than any time that counts.
+// The rows of the first file are after the end of the scene's motion. Those of the second are
+// closer in time than two times that are distinguished.
 TEST_F(MotionCommand, CalibrateRefusesRowsInWhichTheRodDoesNotMove) {
   const std::string header = "time,s,x,y,z\n";
   write("after.csv", header + "50,0.3,0,-0.3,0\n50.1,0.3,0,-0.3,0\n50.2,0.3,0,-0.3,0\n");

@@ -46,7 +46,8 @@ TEST_F(Command, ContradictoryGripsNameFileLineAndKeyWithEveryModel) {
     expect_error("solve " + with_pin("0", "0.1") + " --model " + model, 2,
                  {"scene.toml:10: gripper.at", "two grippers hold this arc length"});
   }
-  // A rod that does not stretch must be longer than the distance of its grippers.
+  // The distance of the grippers equals the rod's length, which is too far for a rod that does not
+  // stretch.
   const std::string taut = with_pin("0.5", "0.5");
   expect_error("solve " + taut, 2,
                {"scene.toml:10: gripper.position", "less than the 0.5 m", "chain and force"});

@@ -71,7 +71,7 @@ TEST_F(Output, NoNumberIsNanOrInfinity) {
   write("weightless.toml", "gravity = [0, 0, 0]\n" + read(steel()));
   write_scene("cable.toml");
   const std::string own = read(path("weightless.toml"));
-  // The scene has a gravity of its own.
+  // A key may be given only once, so the original gravity becomes a comment.
   write("weightless.toml",
         std::regex_replace(own, std::regex("\ngravity = [^\n]*"), "\n# gravity: none"));
   ASSERT_EQ(bash("$dlo solve cable.toml --samples 21 --format csv | head -n 16 >seen.csv").status,
@@ -99,7 +99,8 @@ TEST_F(Output, NoNumberIsNanOrInfinity) {
         if (field.empty()) ++empty;
       }
     }
-    // JSON and text have one writer each; those with most numbers that are none have to do.
+    // All commands share one writer of JSON and one of text, so the two commands with the most
+    // undefined values suffice.
     if (command != "compare both.toml" && command != "stability --case pulled") continue;
     const Outcome json = bash("$dlo " + command + " --format json");
     EXPECT_FALSE(nlohmann::json::parse(json.out, nullptr, false).is_discarded()) << command;

@@ -52,7 +52,7 @@ TEST_F(Output, ThatIsLostOnStandardOutputIsAnError) {
 }
 
 TEST_F(Output, StandardErrorThatIsGoneFailsNothing) {
-  // With a warning to write.
+  // The command prints a warning, so that it writes to standard error.
   const std::string solve = "$dlo solve " + steel() + " --points 20 --samples 3 --format csv";
   const std::string expected = bash(solve).out;
   EXPECT_EQ(expected.substr(0, 8), "x,y,z,s\n");
@@ -94,7 +94,8 @@ TEST_F(Output, DevicesPipesAndLinksStayWhatTheyAre) {
     (void)bash("mkfifo pipe; cat pipe >got & " + command + " -o pipe; wait");
     EXPECT_TRUE(fs::is_fifo(path("pipe"))) << command;
     EXPECT_EQ(read(path("got")), expected) << command;
-    // A link to a file in another folder, over a link, and to one that is not there yet.
+    // The output is a link to a link to a file in another folder, which does not exist in the first
+    // run.
     fs::create_directory(path("folder"));
     fs::create_symlink("folder/real.csv", path("near.csv"));
     fs::create_symlink("near.csv", path("far.csv"));
@@ -121,7 +122,7 @@ TEST_F(Output, AReplacedFileKeepsItsPermissionsAndANewOneHasTheUmasks) {
   for (const char* name : {"old.csv", "new.csv"}) {
     EXPECT_EQ(static_cast<unsigned>(fs::status(path(name)).permissions()), 0640U) << name;
   }
-  // A name as long as names can be.
+  // The file name has the maximum length.
   EXPECT_EQ(bash("$dlo solve cable.toml --format csv -o " + std::string(255, 'n')).status, 0);
 }
 
@@ -143,7 +144,7 @@ TEST_F(Output, AnInputIsNeverWrittenOver) {
     expect_error(words({"regress", scene, "--update --baseline", same}), 2, {same, "unknown key"});
     EXPECT_EQ(read(scene), text) << name;
   }
-  // Other files that are read: shapes, parameters, materials, baselines.
+  // Inputs other than scenes: shapes, parameters, materials, baselines.
   succeeds("solve " + scene + " --format csv -o " + path("shape"));
   succeeds("calibrate " + scene + " -o " + path("params.toml"));
   succeeds("regress " + scene + " --update --baseline " + path("base.toml"));
@@ -168,7 +169,7 @@ TEST_F(Output, AnInputIsNeverWrittenOver) {
   EXPECT_EQ(appended.status, 2);
   EXPECT_TRUE(says(appended.err, {"standard output"}));
   EXPECT_EQ(read(scene), text);
-  // Files that a battery and its scenes name.
+  // Files that a benchmark set names, and files that its scenes name.
   write("shape.csv",
         "x,y,z\n0,0,0\n0.06,0.001,0\n0.12,0.004,0\n0.18,0.009,0\n0.24,0.016,0\n0.3,0.025,0\n");
   write("rest.toml",
@@ -186,7 +187,7 @@ TEST_F(Output, AnInputIsNeverWrittenOver) {
       EXPECT_EQ(read(path(name)), before) << option;
     }
   }
-  // A baseline that is written anew is its own input.
+  // Updating a baseline reads and writes the same file, which is allowed.
   succeeds("regress " + scene + " --update --baseline " + path("base.toml"));
 }
 
@@ -201,7 +202,7 @@ TEST_F(Output, CannotBeAFileThatAFieldNames) {
   };
   expect_refused(words({"solve", scene("frames.npy:1"), "-o", path("frames.npy")}),
                  {"dlo: --output " + path("frames.npy") + ": is read too"});
-  // The first row has a result, the second one names the output.
+  // The second row of the sweep reads the file that is the output.
   expect_error(
       words({"sweep", scene("a.csv"), "--vary", "rod.rest_shape=a.csv,b.csv", "-o", path("b.csv")}),
       2, {path("b.csv") + ": is read too"});
@@ -260,7 +261,7 @@ TEST_F(Output, OutOfMemoryIsALineAndAStatus) {
 }
 
 TEST_F(Output, OutOfThreadsIsALineAndAStatus) {
-  // No limit holds for root.
+  // The limit of threads does not apply to root, so root runs the command as another user.
   const std::string nobody = ::geteuid() == 0 ? "setpriv --reuid=65534 --clear-groups " : "";
   const std::string limited = nobody + "prlimit --nproc=0 $dlo ";
   if (bash(limited + "solve " + steel() + " >/dev/null").status != 0) {

@@ -81,7 +81,7 @@ TEST_F(ProgramCommand, RegressKeepsAProgramsErrorByItsName) {
 }
 
 TEST_F(ProgramCommand, ASignalKillsTheProgram) {
-  // One of those that people send, and one of a limit of the time.
+  // SIGTERM is a signal that users send; SIGXCPU is sent at a limit of computing time.
   for (const int number : {SIGTERM, SIGXCPU}) {
     const std::string line = "mkdir " + path("t") + "; TMPDIR=" + path("t") + " " + DLO_COMMAND +
                              " bench --seconds 60 " + cable() + " --with slow='sh -c \"touch " +

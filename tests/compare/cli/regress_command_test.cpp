@@ -136,7 +136,7 @@ TEST_F(RegressCommand, AnotherSceneOfTheSameNameIsChanged) {
   EXPECT_EQ(result.status, 1) << result.err;
   EXPECT_EQ(result.out.substr(0, 8), "changed ") << result.out;
   EXPECT_TRUE(says(result.out, {"another than the baseline's: RMS"}));
-  // Written in another way it is the same scene.
+  // A scene does not change if its length is written in another unit.
   std::string same = read(steel());
   ASSERT_TRUE(says(same, {"\"50 cm\""}));
   same.replace(same.find("\"50 cm\""), 7, "0.5");

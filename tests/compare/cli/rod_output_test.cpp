@@ -76,7 +76,7 @@ TEST_F(RodCommand, CalibrateFindsTheStiffnessThatIsGiven) {
   EXPECT_FALSE(document.contains("youngs_modulus_Pa"));
   EXPECT_EQ(run(calibrate + " --format csv").out.rfind("bending_stiffness_Nm2,low_Nm2,", 0), 0U);
   succeeds(calibrate + " -o " + path("fit.toml"));
-  // They are lines of a scene's [rod].
+  // The written lines are keys of the table [rod] of a scene.
   const dlo::compare::Scene fitted =
       dlo::compare::parse_scene("[rod]\nlength = 1\n" + read(path("fit.toml")) +
                                     "[[gripper]]\nat = 0\nposition = [0, 0, 0]\ndirection = 0\n",
@@ -93,14 +93,15 @@ TEST_F(RodCommand, AModelWithoutNaturalCurvatureSaysSoAndWhatItCosts) {
                    {"intrinsically curved, which models chain and force neglect with the law"}));
   const json entry = json_of("compare --no-modulus " + paper).at("cases")[0];
   EXPECT_EQ(entry.at("neglected"), json({"natural curvature"}));
-  // The free hose is a circle: without its curvature the end is decimetres off.
+  // The hose without load is a circle. If its natural curvature is neglected, the deviation is more
+  // than 0.1 m.
   const json& budget = entry.at("budget");
   EXPECT_GT(budget.at("natural_curvature_m").get<double>(), 0.1);
   EXPECT_FALSE(budget.contains("twist_m"));
   const json hooke = json_of("compare --no-modulus " + hose()).at("cases")[0];
   EXPECT_FALSE(hooke.contains("neglected"));
   EXPECT_FALSE(hooke.at("budget").contains("natural_curvature_m"));
-  // With it the force model is the rod but for its segments.
+  // With natural curvature the force model differs from the rod only by its discretisation.
   EXPECT_LT(hooke.at("deviation").at("rms_over_length").get<double>(), 2e-3);
 }
 

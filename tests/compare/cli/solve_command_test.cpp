@@ -55,7 +55,7 @@ TEST_F(Command, SolveWritesTheContractsJsonForEveryModel) {
 }
 
 TEST_F(Command, TooFewPointsForTheGrippersIsBadInput) {
-  // Half a segment on the pin's far side is 2 cm at most.
+  // The rod ends 2 cm beyond the pin, so half a segment must be at most 2 cm long.
   std::string text = two_grippers;
   text.replace(text.find("40 cm"), 5, "48 cm");
   expect_error("solve " + scene(text) + " --model chain --points 13", 2,
@@ -83,12 +83,12 @@ TEST_F(Command, JsonHasThePlan) {
     EXPECT_NEAR(plan.at("obstacles")[0].at("clearance_m"), 0.099, 1e-12);
     EXPECT_GT(plan.at("neglected")[0].at("bound_m").get<double>(), 0);
   }
-  // Out of reach, so that exact, which knows no obstacles, takes the scene.
+  // The obstacle is out of reach, so model exact, which does not detect contact, accepts the scene.
   succeeds("solve " + far + " --model exact");
   expect_error("solve " + far + " --target-error 0", 2, {"--target-error"});
 }
 
-// A strip of rubber that hangs is longer by w l^2 / (2 EA), its weight over E A.
+// A hanging strip of rubber extends by w l^2 / (2 EA), with the weight per length w.
 TEST_F(Command, ModelExactIsTheDefaultAndTheReferenceOfARodThatStretches) {
   const std::string stretches = scene(
       "gravity = [0, -10, 0]\n[rod]\nlength = 2\ndiameter = 0.01\nstretch = true\n"

@@ -50,7 +50,8 @@ class OutputsOverInputs : public TrackCommand {
     std::filesystem::create_hard_link(path("move.csv"), path("hard.csv"));
     std::filesystem::create_symlink("move.csv", path("soft.csv"));
   }
-  /// Refused before any work, and no file is touched.
+  /// Expects that the command is refused with a message that contains `said`, and that the file is
+  /// unchanged.
   void expect_untouched(const std::string& command, const std::string& file,
                         const std::string& said) const {
     const std::string before = read(path(file));
@@ -87,7 +88,7 @@ TEST_F(OutputsOverInputs, NoFileIsAmongTheFramesOfASeries) {
                    "is written too");
   std::filesystem::create_hard_link(path("move.csv"), path("m_00003.vtk"));
   expect_untouched(track("m_00001.toml", series), "move.csv", "is read too");
-  // Names that are no frame's: of another stem, and with a digit too few.
+  // These names do not collide with frames: one has another stem, one has too few digits.
   std::filesystem::remove(path("m_00003.vtk"));
   const std::string beside = said(track("m_00001.toml", series + " -o " + path("m_0001.vtk")));
 }

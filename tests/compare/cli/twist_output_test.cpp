@@ -65,7 +65,7 @@ TEST_F(TwistCommand, CommandsThatUseThemSaySo) {
   for (const std::string& command : commands) {
     EXPECT_TRUE(says(run(command + wire()).err, {note})) << command;
   }
-  // These have none with any law.
+  // The stability map and tracking neglect twist with any bending law.
   const std::string map = "stability --map cF-cc --columns 2 --rows 4 --map-steps 500 ";
   EXPECT_TRUE(says(run(map + wire()).err, {"the grippers hold twist, which the map neglects"}));
   EXPECT_TRUE(says(run("bench --seconds 0.1 --repeats 1 " + wire()).err,
@@ -87,7 +87,7 @@ TEST_F(TwistCommand, TheEnergyModelGivesTorqueAndEnergyOfTheTwist) {
   EXPECT_TRUE(document.at("one_branch_followed").get<bool>());
   EXPECT_TRUE(says(said("solve " + wire()), {"others with these turns may be lower"}));
   const json& part = document.at("twist").at("parts")[0];
-  // Bending out of its plane the wire turns a part of the half turn into writhe.
+  // The wire bends out of its plane, which converts a part of the prescribed half turn into writhe.
   const double angle = part.at("angle_rad").get<double>();
   EXPECT_GT(angle, pi / 2);
   EXPECT_LT(angle, pi);

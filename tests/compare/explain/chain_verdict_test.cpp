@@ -29,8 +29,8 @@ std::vector<double> equal(int segments) {
   return std::vector<double>(static_cast<std::size_t>(segments), 1.0 / segments);
 }
 
-// A correct chain of few hinges is a few percent away from the rod. It is identified as a chain and
-// passes; one with other springs does not.
+// A correct chain of few hinges deviates from the rod by a few percent. The diagnosis identifies it
+// as a chain, and it passes; a chain with other springs does not.
 TEST(Explanation, AChainOfHingesIsRightInItsOwnWay) {
   const Scene scene = clamped();
   for (const int segments : {10, 20, 40}) {
@@ -53,7 +53,8 @@ TEST(Explanation, AChainOfHingesIsRightInItsOwnWay) {
   }
 }
 
-// That is so whether or not anything is explained, and whatever else explains it.
+// judge_as_chain() gives the same verdict whether or not explanations are searched, and whichever
+// are found.
 TEST(Explanation, TheVerdictKnowsChainsWithoutAnyExplanation) {
   const Scene scene = clamped();
   const MeasuredShape right = made(hinged_chain(equal(20), 0.05, 1, false));
@@ -76,8 +77,8 @@ TEST(Explanation, TheVerdictKnowsChainsWithoutAnyExplanation) {
   EXPECT_EQ(explained.reason.find(alone.reason), 0);
 }
 
-// Its springs are EI/h, and linear in the angle: so they are called, where the angles are large
-// enough for it to show.
+// The springs are EI/h and linear in the angle. The reason names this law if the angles are large
+// enough to distinguish laws.
 TEST(Explanation, AChainsSpringsAreCalledByTheirLaw) {
   Scene rope = clamped();
   rope.scale_modulus(0.2);
@@ -86,7 +87,8 @@ TEST(Explanation, AChainsSpringsAreCalledByTheirLaw) {
   EXPECT_TRUE(says(outcome.judgement.reason, {"its springs EI/h and linear in the angle"}));
 }
 
-// This chain is nearer to the rod than the others; a tolerance of 0.2 % distinguishes them.
+// A chain that is clamped in the middle of a segment is nearer to the rod than other chains; a
+// tolerance of 0.2 % distinguishes them.
 TEST(Explanation, AChainClampedInTheMiddleOfASegmentIsKnown) {
   std::vector<double> lengths(11, 0.1);
   lengths.front() = lengths.back() = 0.05;
@@ -105,7 +107,7 @@ TEST(Explanation, AChainClampedInTheMiddleOfASegmentIsKnown) {
   }
 }
 
-// A chain that is right but for its tip is right in the mean, and not everywhere.
+// Only the tip of the chain is wrong: its RMS deviation passes, its largest deviation does not.
 TEST(Explanation, AChainIsHeldAgainstTheMeasureThatWasAsked) {
   Matrix3Xd points = hinged_chain(equal(20), 0.05, 1, false);
   points.rightCols<1>() += Vector3d(0.003, 0.0045, 0);
@@ -122,7 +124,8 @@ CheckResult checked(const Scene& scene, const Matrix3Xd& points,
                 .shape = {.modulus = ModulusSearch::no}});
 }
 
-// A chain at rest can be found from any points, since its segments are as long as the rod's share.
+// Points of the wrong length do not pass, although a chain at rest can be computed for them: the
+// length of its segments is that of the rod divided by their number.
 TEST(ChainVerdict, NeedsPointsThatAreAsLongAsTheRod) {
   const Scene scene = clamped();
   const Matrix3Xd chain = hinged_chain(equal(32), 1.0 / 32, 1, false);
@@ -134,7 +137,8 @@ TEST(ChainVerdict, NeedsPointsThatAreAsLongAsTheRod) {
   }
 }
 
-// Points to and fro across a chain are near it, on a polyline that is too long for the rod.
+// Points that alternate between the two sides of a chain are near it, but their polyline is too
+// long.
 TEST(ChainVerdict, NeedsAsMuchOfTheRodAsIsAsked) {
   const Scene scene = clamped();
   const ShapeTolerance tolerance{.allowed_m = 0.005};
@@ -259,7 +263,7 @@ TEST(ChainVerdict, AChainWithThePapersLawFailsWithItAsCause) {
   }
 }
 
-// Bodies begin at their joints: the last one's end is no body's begin, in any scene.
+// A file of body positions has the begins of all segments, but not the end of the last segment.
 TEST(ChainVerdict, AMissingLastEndIsAppended) {
   const Matrix3Xd chain = hinged_chain(equal(20), 0.05, 1, false);
   const CheckResult result = checked(clamped(), chain.leftCols(20));
@@ -267,7 +271,8 @@ TEST(ChainVerdict, AMissingLastEndIsAppended) {
   ASSERT_EQ(result.notes.size(), 1U);
   EXPECT_TRUE(says(result.notes[0], {"20 points", "end of the last segment is appended"}));
   EXPECT_LT((result.check.alignment.shape.points.col(20) - chain.col(20)).norm(), 1e-4);
-  // The first point is at the clamp, and many points are no shorter than the rod.
+  // Nothing is appended if the first point of a chain is missing, or if so many points are given
+  // that the polyline is as long as the rod.
   EXPECT_TRUE(checked(clamped(), chain.rightCols(20)).notes.empty());
   const Matrix3Xd rod = right_file(clamped(), 101).points;
   EXPECT_TRUE(checked(clamped(), rod).notes.empty());
@@ -289,7 +294,7 @@ TEST(ChainVerdict, AMissingLastPointIsTheChains) {
   }
 }
 
-// A chain that is held at its second point would have a segment of length 0.
+// A chain whose second point is at the clamp would have a first segment of length 0.
 TEST(ChainVerdict, APointBehindTheClampIsNoChainsPoint) {
   const Matrix3Xd chain = hinged_chain(equal(20), 0.05, 0.5, true);
   Matrix3Xd points(3, 22);
@@ -297,7 +302,7 @@ TEST(ChainVerdict, APointBehindTheClampIsNoChainsPoint) {
   EXPECT_EQ(checked(clamped(), points).judgement.verdict, ShapeVerdict::fail);
 }
 
-// Three coordinates of a point say as much of three numbers as of one.
+// One measured point has three coordinates, so a cause with three fitted numbers always fits it.
 TEST(ChainVerdict, OneMeasuredPointIsJudgedByItsDistance) {
   const Vector3d tip = right_file(clamped(), 2).points.col(1);
   Matrix3Xd points = Matrix3Xd::Zero(3, 2);
@@ -317,7 +322,8 @@ TEST(ChainVerdict, AFileThatPassesHasNoCauseAndNoHint) {
   EXPECT_TRUE(result.passes());
   EXPECT_TRUE(result.explanations.empty());
   EXPECT_TRUE(result.check.hint.empty()) << result.check.hint;
-  // E* would be that of the discretisation.
+  // E* would describe the discretisation error, not the material; the cause "a chain" supersedes
+  // it.
   ASSERT_TRUE(is_identified(result.check.effective_modulus.optimum));
   ASSERT_TRUE(result.supersedes_modulus);
   EXPECT_TRUE(says(result.supersedes_modulus->cause, {"a chain of 10 segments"}));

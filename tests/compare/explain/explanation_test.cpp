@@ -68,7 +68,7 @@ TEST(Explanation, NamesWhatIsWrongWithAFile) {
   pixels.row(1) *= -1;
   pixels.colwise() += Vector3d(320, 240, 0);
   expect_named("pixels", scene, made(pixels), {"1.25 mm", "y down", "pixels"});
-  // A picture's vertical is the scene's, whichever that is.
+  // The vertical of an image is that of the scene, along y or along z.
   Scene z_up = scene;
   z_up.gravity = {0, 0, -9.81};
   z_up.grippers[0].direction = {std::cos(20 * degree), 0, std::sin(20 * degree)};
@@ -80,7 +80,7 @@ TEST(Explanation, NamesWhatIsWrongWithAFile) {
   std::swap(rows[11], rows[20]);
   expect_named("out of order", scene, made(right(Eigen::all, rows)),
                {"out of order", "1, 2, 3, 31, 5, 6, .."});
-  // Bodies of a chain begin at their joints: the last one's end is no body's begin.
+  // A file of body positions has the begins of all segments, but not the end of the last segment.
   const Matrix3Xd joints = right_file(scene, 7).points;
   expect_named("no last point", scene, made(joints.leftCols(6)),
                {"an end point is missing", "xpos"}, 2e-3);
@@ -95,8 +95,8 @@ TEST(Explanation, NamesWhatIsWrongWithAFile) {
   EXPECT_TRUE(judged(scene, against).judgement.passes());
 }
 
-// The origin is not at a gripper: a scale moves the grippers, and a rotation leaves one where it
-// is.
+// The origin is not at a gripper. A scale then moves both grippers, and a rotation about one of
+// them leaves that one in place.
 TEST(Explanation, NamesTheScaleAndTheRotationOfAFile) {
   Scene scene = between_clamps();
   for (Gripper& gripper : scene.grippers) gripper.position += Vector3d(0.2, -0.3, 0.1);
@@ -127,7 +127,7 @@ TEST(Explanation, AFileThatIsReadWronglyIsNamedFirst) {
   EXPECT_TRUE(
       says(wrong.judgement.reason, {"mm if the file is in mm, not in metres; as it was read: "}));
   EXPECT_EQ(wrong.judgement.reason.find("RMS"), 0U) << wrong.judgement.reason;
-  // Here the scene is wrong as well.
+  // In this case the scene is wrong too, not only the file.
   Scene softer = scene;
   softer.scale_modulus(0.3);
   const JudgedShape other = judged(scene, right_file(softer));
@@ -172,7 +172,8 @@ TEST(Explanation, NamesWhatIsAnotherScene) {
                {"gripper 2 turns the rod", "90 deg (twist)"});
 }
 
-// The torque of a twisted rod is GJ times its twist: the stiffness or the angle is another one.
+// The torque of a twisted rod is GJ times its twist, so that a wrong stiffness and a wrong angle
+// are both causes.
 TEST(Explanation, NamesAnotherTorsionalStiffness) {
   const auto twisted = [](double stiffness) {
     return between_clamps("torsional_stiffness = " + std::to_string(stiffness) + "\n",
@@ -241,9 +242,9 @@ TEST(Explanation, NoCauseIsListedTwice) {
   }
 }
 
-// A planar solver's arch stays upright where it should have fallen. Of all stiffnesses that are
-// followed, the one at which arches become stable fits best, but it does not determine the
-// material.
+// The points are those of a planar solver, whose arch stays in its plane although the stable one
+// has left it. The best fit among all stiffnesses is the one at which planar arches become stable,
+// but it does not determine the material.
 TEST(Explanation, PlanarPointsOfARodThatHasLeftItsPlaneAreToldAsSuch) {
   const Scene scene = arch(0.05);
   std::optional<MeasuredShape> planar;
@@ -258,7 +259,7 @@ TEST(Explanation, PlanarPointsOfARodThatHasLeftItsPlaneAreToldAsSuch) {
   const ShapeCheck check = check_shape(scene, *planar);
   EXPECT_TRUE(check.effective_modulus.at_bifurcation);
   EXPECT_EQ(check.effective_modulus.optimum, Optimum::one_sided);
-  // Where it begins to stand: its plane is stable above, and not below.
+  // The fitted stiffness is the bifurcation: above it the planar arch is stable, below it is not.
   const auto stands = [](double stiffness) {
     const energy_model::Equilibrium rod = solve_reference(arch(stiffness), Model::energy);
     return rod.sample(equal_arc_lengths(1, 41)).points.row(2).cwiseAbs().maxCoeff() < 1e-6;

@@ -11,16 +11,18 @@
 
 namespace dlo::test {
 
-/// Points at rest of a hinged chain of a rod of 0.5 kg/m whose clamp points 20 degrees up; its
-/// springs are linear in the angle.
-/// @param lengths  of the segments;  @param h  over which a spring EI/h stands for the rod
-/// @param welded  whether the clamp holds the first segment; else it holds a hinge
+/// Returns the points at rest of a hinged chain for a rod of 0.5 kg/m whose clamp points 20 degrees
+/// up. The springs are EI/h and linear in the angle.
+/// @param lengths    of the segments [m]
+/// @param h          length of rod that one spring represents [m]
+/// @param stiffness  EI [N m^2]
+/// @param welded     whether the clamp holds the first segment; else it holds a hinge
 
 inline Eigen::Matrix3Xd hinged_chain(const std::vector<double>& lengths, double h, double stiffness,
                                      bool welded) {
   constexpr double weight = 0.5 * 9.81;  // per length [N/m]
   const Eigen::Rotation2Dd direction(20 * std::numbers::pi / 180);
-  // A hinge at the clamp is the joint behind a segment of no length that the clamp holds.
+  // A hinge at the clamp is modelled as a joint behind a clamped segment of length zero.
   const Eigen::Index before = welded ? 0 : 1;
   const auto n = static_cast<Eigen::Index>(lengths.size());
   Eigen::VectorXd segments = Eigen::VectorXd::Zero(before + n);

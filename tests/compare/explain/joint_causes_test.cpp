@@ -54,9 +54,9 @@ Matrix3d random_axes(std::mt19937& random) {
   return axes;
 }
 
-/// An error of a file.
+/// A modification of a correct file by one error.
 struct Fault {
-  const char* words;  ///< that name it and no other
+  const char* words;  ///< words that name this error and no other one
   Matrix3Xd (*apply)(const Matrix3Xd& points, std::mt19937& random);
 };
 
@@ -118,7 +118,8 @@ TEST(JointCauses, TwoThingsThatAreWrongWithAFileAreBothNamed) {
   EXPECT_GE(named, 27);
 }
 
-// A file with z up that was moved as well: not "z is down", nor two axes exchanged.
+// A file with z up that is also translated must not be explained as "z is down" or as two exchanged
+// axes.
 TEST(JointCauses, AMovedFileWithZUpIsCalledThat) {
   const Scene scene = scene_of(0);
   for (const double height : {1.0, 0.3}) {
@@ -132,7 +133,7 @@ TEST(JointCauses, AMovedFileWithZUpIsCalledThat) {
   }
 }
 
-// Its bodies begin at its hinges, and where the last one ends is no body's begin.
+// A file of body positions has the begins of all segments, but not the end of the last segment.
 TEST(JointCauses, AChainOfBodiesWhoseLastEndIsMissingIsCalledThat) {
   constexpr int segments = 8;
   const Matrix3Xd chain =

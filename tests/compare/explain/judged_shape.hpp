@@ -55,7 +55,9 @@ struct JudgedShape {
   std::vector<compare::Explanation> explanations;
 };
 
-/// @param share  of the length that is allowed; `largest` rather than in the mean
+/// Judges a shape without a search for E*, and explains it if it fails.
+/// @param share    allowed deviation divided by the length [-]
+/// @param largest  whether the largest deviation is judged, not the RMS
 inline JudgedShape judged(const compare::Scene& scene, const compare::MeasuredShape& shape,
                           double share = 0.01, bool largest = false) {
   const compare::ShapeCheckOptions options{.modulus = compare::ModulusSearch::no};

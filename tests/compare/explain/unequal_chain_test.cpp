@@ -29,7 +29,8 @@ Scene unequal_scene() {
   return scene;
 }
 
-/// Welded to its clamp: from a third to three thirds of the longest.
+/// Returns the lengths of 20 segments that add up to 1 m; the longest is up to three times the
+/// shortest.
 Eigen::VectorXd unequal_segments() {
   std::mt19937 random(3);
   std::uniform_real_distribution<double> length(0.5, 1.5);
@@ -46,7 +47,8 @@ Eigen::Matrix2Xd weights_of(const Eigen::VectorXd& h) {
   return forces;
 }
 
-/// @param factor  of springs that are EI over half of both neighbours
+/// Returns the points at rest of a chain with unequal segments whose springs are `factor` times EI
+/// divided by the mean length of the two adjacent segments.
 template <typename Moment>
 Shape unequal_chain(const Moment& moment, double factor,
                     std::optional<Eigen::Matrix2Xd> acting = std::nullopt) {

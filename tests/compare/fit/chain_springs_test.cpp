@@ -21,9 +21,9 @@ std::map<ChainClamp, ChainSprings> springs_of(const Scene& scene, int segments) 
   return result;
 }
 
-// A load F at the tip of a rod that hardly bends: its points come down by F (3 l s^2 - s^3) / (6
-// EI), those of a chain by the sum over the joints i before them of F (n - i) h / k times (j - i)
-// h.
+// Small deflection under a load F at the tip. A point of the rod moves down by F (3 l s^2 - s^3) /
+// (6 EI). Point j of a chain moves down by the sum over the joints i before it of F (n - i) h / k
+// times (j - i) h.
 TEST(ChainSprings, OfAStiffRodWithALoadAtItsTipTheyAreThoseOfBeamTheory) {
   Scene scene = test::heavy_scene(1e-9, 0);
   scene.loads = {{.at = 1, .force = {0, -0.001 * scene.bending_stiffness(), 0}}};
@@ -97,7 +97,8 @@ TEST(ChainSprings, OfUnequalSegmentsTheyBringAnotherSolversChainToTheRod) {
     const Eigen::Matrix3Xd points = test::chain_at_rest(h, springs, forces, moment);
     std::vector<double> s(lengths.size() + 1, 0.0);
     std::partial_sum(lengths.begin(), lengths.end(), s.begin() + 1);
-    // The rod's points as far from each other as the chain's, all but for their bow.
+    // The rod is sampled at the arc lengths of the chain's points; chord and arc differ by the
+    // curvature only.
     const Eigen::Matrix3Xd rod = solve_reference(scene, Model::energy).sample(s).points;
     return (points - rod).norm() / std::sqrt(static_cast<double>(n + 1));
   };
@@ -111,7 +112,8 @@ TEST(ChainSprings, OfUnequalSegmentsTheyBringAnotherSolversChainToTheRod) {
   }
 }
 
-// The first segment is then half of a segment that continues behind the clamp.
+// A first segment of half length is treated as the half of a segment that a clamp holds in its
+// middle.
 TEST(ChainSprings, OfUnequalSegmentsAHalfAtTheClampIsHeldInTheMiddle) {
   const Scene scene = test::heavy_scene(2, 0);
   std::vector<double> lengths = unequal_lengths();
@@ -151,7 +153,7 @@ TEST(ChainSprings, OfASoftRopeEachLawHasItsOwnStiffness) {
   }
 }
 
-// Twist, sections and the like are not in a plain chain.
+// A plain chain does not model twist, sections and the like.
 TEST(ChainSprings, ARodThatIsNoPlainChainHasNone) {
   Scene scene = test::heavy_scene(5, 0);
   scene.natural_strain.y() = 1;

@@ -38,11 +38,12 @@ TEST(ForceModelFit, HookeChoosesPointsForTheTargetAndKeepsItOnHoldOutScenes) {
   EXPECT_NEAR(fit.order, 2, 0.1);
   EXPECT_LE(fit.worst(), 1e-3);
   EXPECT_LE(fit.worst_holdout(), 1e-3);
-  // A quarter of the error takes twice the segments.
+  // The error is of second order: a quarter of it requires twice the number of segments.
   const ForceModelFit finer = fit_force_model(scenes, {}, {.target = 1e-3 / 4});
   EXPECT_NEAR((finer.settings.points - 1.5) / (fit.settings.points - 1.5), 2, 0.15);
   EXPECT_LE(finer.worst(), 1e-3 / 4);
-  // And one point fewer misses the polygon's share of the target.
+  // With 10 % fewer points the error exceeds the part of the target that is allowed for the
+  // polygon.
   ForceModelFitOptions fewer{.points = fit.settings.points * 9 / 10};
   EXPECT_GT(fit_force_model(scenes, {}, fewer).worst(), 0.9e-3);
 }
@@ -93,7 +94,8 @@ TEST(ForceModelFit, FittedStiffnessOfThePaperLawIsTheBest) {
                 alone.rms_over_length[i]);
     }
   }
-  // A cubic law has no linear law's shape: percents of the length remain where it bends.
+  // With any c_b, the shape of a cubic law deviates from that of a linear law by more than 0.5 % of
+  // the length.
   EXPECT_GT(alone.rms_over_length[2], 0.005);
 }
 

@@ -25,7 +25,8 @@ struct Tally {
   double farthest = 0;  // |log(E / truth)| of those that tell it
 };
 
-/// Fits `scene` to as many shapes as `draws`, each made by `seen`.
+/// Counts the results of `draws` fits of `scene`, each to a new shape from seen(), against the true
+/// modulus.
 template <typename Seen>
 Tally tally_of(int draws, const Scene& scene, double truth, const Seen& seen,
                const MaterialFitOptions& options = {}) {
@@ -50,11 +51,11 @@ Tally tally_of(int draws, const Scene& scene, double truth, const Seen& seen,
 
 class MaterialFitCoverage : public testing::TestWithParam<std::tuple<double, PoseFreedom>> {};
 
-// The exact shape at 7 uneven points, reversed, moved, with noise of 0.1 % of the length: of 100
-// draws an interval of 95 % misses the truth about 5 times, and more than 10 times once in 87 tests
-// if it is right; it never misses in one of 170. With the frame unknown and without arc lengths it
-// may be wider: how far the points slide is bounded by the rod's ends, and several optima count.
-// The scene's own modulus is not the truth.
+// Each draw is the exact shape at 7 uneven points, reversed, moved, with noise of 0.1 % of the
+// length. A correct interval of 95 % misses the truth in about 5 of 100 draws; in more than 10 with
+// probability 1/87, and in none with probability 1/170. With an unknown frame and without arc
+// lengths the interval may be wider, because the rod's ends bound how far the points slide along
+// it, and because several optima count. The modulus of the fitted scene is not the true one.
 TEST_P(MaterialFitCoverage, IntervalHoldsTheTruthInNineOfTenDraws) {
   const auto& [gamma, freedom] = GetParam();
   const bool known = freedom == PoseFreedom::known;
@@ -88,7 +89,7 @@ INSTANTIATE_TEST_SUITE_P(GammasAndPoses, MaterialFitCoverage,
                          testing::Combine(testing::Values(0.5, 1.0, 10.0, 100.0),
                                           testing::Values(PoseFreedom::known, PoseFreedom::rigid)));
 
-// With arc lengths an unknown frame leaves the problem as regular as a known one.
+// With arc lengths the fit is as well conditioned in an unknown frame as in a known one.
 TEST(MaterialFit, IntervalHoldsTheTruthInNineOfTenDrawsOfAnUnknownFrameWithArcLengths) {
   const Scene scene = heavy_scene(5, 0);
   const energy_model::Equilibrium exact = solve_reference(scene, Model::exact);
@@ -130,7 +131,7 @@ TEST(MaterialFit, CorrelatedErrorsAreSaidAndWidenTheInterval) {
   }
 }
 
-// The length and the share come out of many points.
+// From many points the correlation length and the correlated share of the noise are identified.
 TEST(MaterialFit, TheCorrelationIsMeasured) {
   const Scene scene = heavy_scene(5, 0);
   const std::vector<double> s = equal_arc_lengths(1, 801);
@@ -139,10 +140,11 @@ TEST(MaterialFit, TheCorrelationIsMeasured) {
   shape.points += correlated_noise(s, 1e-3, 0.02, random);
   const MaterialFit smooth = fit_material({scene}, {shape});
   ASSERT_TRUE(smooth.correlation);
-  // 50 lengths in each of two directions: known to about a fifth.
+  // The rod contains 50 correlation lengths in each of two directions, which determine the length
+  // to about 20 %.
   EXPECT_NEAR(std::log(smooth.correlation->length_m / 0.02), 0, std::log(1.8));
   EXPECT_GE(smooth.correlation->share, 0.95);
-  // The standard deviation from about 100 independent errors: 14 %.
+  // About 100 independent errors determine the mean square to 14 %.
   EXPECT_NEAR(smooth.noise_m / 1e-3, 1, 0.4);
   shape.points = with_noise(shape.points, 1e-3, random);
   const MaterialFit half = fit_material({scene}, {shape});

@@ -61,8 +61,8 @@ TEST(MaterialFit, TwoClampsAreFollowedFromOneModulusToTheNext) {
   }
 }
 
-// A rod that is clamped upright falls to either side. The points are near one side, while the
-// lowest shape on the other side would fit them with another modulus.
+// A rod that is clamped nearly upright bends to either side. The points are near a higher
+// equilibrium on one side. The lowest one on the other side would fit them with another modulus.
 TEST(MaterialFit, AHeldRodIsFollowedFromItsOwnPoints) {
   Scene truth = heavy_scene(30, 80);
   truth.obstacles = {{obstacle::Body::cylinder({0.1, 0.25, 0}, Eigen::Vector3d::UnitZ(), 0.05)}};
@@ -189,7 +189,8 @@ TEST(MaterialFit, SeveralShapesNarrowTheInterval) {
   EXPECT_EQ(both.degrees_of_freedom, 2 * (2 * 9 - 6) - 1);
 }
 
-// Three fits move to slightly different moduli, which is the rest of the difference.
+// Shared equilibria are computed once. The three fits converge to slightly different moduli and
+// therefore need a few more.
 TEST(MaterialFit, ShapesOfOneSceneShareItsEquilibria) {
   const Scene scene = heavy_scene(2, 0);
   std::mt19937 random(11);
@@ -264,7 +265,8 @@ TEST(MaterialFit, RefusesWhatCannotBeFitted) {
   const Scene scene = heavy_scene(1, 0);
   const MeasuredShape three = exact_shape(scene, {0.2, 0.5, 0.9});
   EXPECT_NO_THROW((void)fit_material({scene}, {three}));
-  // Three points across the rod give six numbers, a frame takes them all.
+  // Three points have six coordinates across the rod, as many as an unknown frame: nothing is left
+  // for E.
   EXPECT_THROW((void)fit_material({scene}, {three}, {.pose = PoseFreedom::rigid}), InputError);
   EXPECT_THROW((void)fit_material({scene, scene}, {three}), InputError);
   EXPECT_THROW((void)fit_material({}, {}), InputError);

@@ -37,7 +37,7 @@ struct Hangings {
     const std::vector<double> s = equal_arc_lengths(1, 40);
     Eigen::Matrix3Xd errors = test::correlated_noise(s, noise, 0.2, random);
     errors.row(2).setZero();
-    // A shape that is photographed in its plane was in that plane.
+    // The image shows a rod in its plane, so the true shape is confined to the plane.
     energy_model::Problem problem = energy_problem(truth);
     problem.confined_to_plane = true;
     scenes.push_back(said);
@@ -51,7 +51,8 @@ Scene turned(Scene scene, std::size_t gripper, double angle) {
   return scene;
 }
 
-/// A wire in a fixture of which the clamp is off by 6 degrees, at four known angles.
+/// Returns shapes of a wire at four known clamp angles, in a fixture whose clamp is misaligned by 6
+/// degrees.
 Hangings in_a_fixture(double noise = 0) {
   std::mt19937 random(3);
   Hangings result;
@@ -94,9 +95,9 @@ TEST(Prediction, WhatAFixtureHasWrongIsFoundOnceAndPredictsTheShapeLeftOut) {
   ASSERT_TRUE(found.prediction.has_value());
   EXPECT_EQ(found.prediction->shapes_m.size(), 4);
   EXPECT_LT(found.prediction->rms_m, 1e-4);
-  // Four scenes at four angles are no repetitions.
+  // Four scenes with different angles contain no repeated mounting, so no repeatability is given.
   EXPECT_FALSE(found.prediction->repeatability_m.has_value());
-  // A clamp error that each shape has of its own predicts no other shape.
+  // If each shape has its own clamp error, the errors of the others do not predict it.
   options.shared_clamps = false;
   const MaterialFit own = fit_material(seen.scenes, seen.shapes, options);
   ASSERT_TRUE(own.prediction.has_value());

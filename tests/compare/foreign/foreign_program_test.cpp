@@ -119,7 +119,7 @@ TEST_F(ForeignFolder, ReadsNothingButRegularFiles) {
               StartsWith("its shape: cannot be read (Too many levels"));
   EXPECT_THAT(run_shell("ln -s nothing $2").problem,
               StartsWith("its shape: cannot be read (No such file"));
-  // Nor are its last words waited for.
+  // A pipe in place of the file of error messages is not waited for.
   EXPECT_EQ(run_shell("cd ${2%/*}; rm stderr; mkfifo stderr; exit 3").problem, "exit status 3");
   EXPECT_EQ(run_shell("printf '0,0,0\\n1,0,0\\n' > $2.txt; ln -s $2.txt $2").problem, "");
 }
@@ -132,7 +132,8 @@ TEST_F(ForeignFolder, MayBeMadeAwayWithByTheProgram) {
 }
 
 TEST_F(ForeignFolder, GoesWithAllThatIsInItHoweverDeep) {
-  // More folders than can be open, of a path longer than a path may be; one that nobody may read.
+  // The program leaves a tree that is deeper than the limits of open folders and of path lengths,
+  // and a folder without permissions.
   const std::string deep =
       "cd ${2%/*}; mkdir tree closed closed/in; chmod 0 closed; d=$(printf '/deep%.0s' $(seq "
       "520)); "
@@ -161,7 +162,7 @@ TEST(ForeignDeviation, OfTheReferenceItselfIsZeroAndOfAMovedShapeTheWay) {
   shape.points.row(2).array() += 0.005;
   const Deviation moved = foreign_deviation(scene, shape, rod.sample);
   EXPECT_NEAR(moved.rms_over_length, 0.005, 1e-12);
-  // Either direction of the file, with or without arc lengths.
+  // The points may be in either order, with or without arc lengths.
   shape.points = shape.points.rowwise().reverse().eval();
   shape.arc_length.clear();
   EXPECT_NEAR(foreign_deviation(scene, shape, rod.sample).rms_over_length, 0.005, 1e-5);

@@ -81,7 +81,8 @@ TEST(Comparison, PaperRodIsFarFromItsModulusAndHookeIsNot) {
   EXPECT_LT(paper.effective_modulus.ratio, 0.1);
   EXPECT_GT(paper.budget.law.rms_m, 10 * paper.budget.bookkeeping.rms_m);
   EXPECT_LT(paper.budget.stretch.rms_m, 1e-6 * scene.length);
-  // Formula 21 with the consistent segments gives another c_b, which is their interaction.
+  // Formula 21 with the `consistent` segment length gives another c_b; this is the interaction of
+  // law and convention.
   EXPECT_NEAR(paper.budget.law.share + paper.budget.interaction.share, 1, 0.01);
   EXPECT_LT(paper.budget.interaction.rms_m, 0.15 * paper.budget.total_m);
   scene.force_model.law = BendingLaw::hooke;
@@ -104,15 +105,16 @@ TEST_P(BudgetOf, AddsUpToTheTotal) {
     scene.force_model.law = law;
     scene.force_model.bookkeeping = bookkeeping;
     scene.force_model.points = points;
-    // A hundredth of AE: rest comes ten times sooner.
+    // c_c is a hundredth of AE, with which the polygon comes to rest ten times sooner.
     scene.force_model.c_c = scene.axial_stiffness() / 100;
     const Comparison c = compare(scene);
     const Budget& b = c.budget;
     const double parts = test::sum_of_shares(b) - b.interaction.share;
     EXPECT_NEAR(test::sum_of_shares(b), 1, 1e-9) << points;
-    // The total of the budget is the deviation, on other arc lengths.
+    // The total of the budget equals the deviation, except that the arc lengths at which shapes are
+    // compared differ.
     EXPECT_NEAR(b.total_m, c.deviation.rms_m, 0.05 * c.deviation.rms_m) << points;
-    // Only where two things are switched is there anything to interact.
+    // There is an interaction only if both the law and the convention differ from the reference.
     if (law == BendingLaw::hooke || bookkeeping == Bookkeeping::consistent) {
       EXPECT_NEAR(parts, 1, 0.01) << points;
       EXPECT_LT(b.interaction.rms_m, 0.02 * b.total_m + 1e-7) << points;
@@ -140,8 +142,8 @@ TEST(Budget, SaysHowFarFromRestTheShapeIs) {
 }
 
 TEST(Comparison, ComparesWithTheStateThatTheForceModelIsIn) {
-  // Between clamps that lean up a heavy rod hangs out of its plane, to either side: two mirror
-  // images, of which force and energy model may well take different ones.
+  // A heavy rod between clamps that point upwards hangs out of its plane, to either side. The force
+  // model and the energy model may find different ones of the two mirror images.
   Scene scene = heavy_scene(100, 30);
   scene.force_model.c_c = scene.axial_stiffness() / 100;
   scene.grippers.push_back(
@@ -225,7 +227,8 @@ TEST(Solve, TorquesAreAboutTheGripperWhereverItIs) {
   }
 }
 
-// A search ends on a saddle here; the chain's shape leads to the table.
+// The search of the energy model ends at a saddle. Started from the chain's shape it converges to
+// the equilibrium on the table.
 TEST(Solve, ACableBetweenClampsLiesOnATable) {
   const Scene scene = parse_scene(R"(
 rod = { length = 2, diameter = "6 mm", material = "silicone" }

@@ -65,7 +65,8 @@ TEST(ContactBudget, IsNothingWhereNothingRigidIsTouched) {
   Scene rigid = over_a_floor(200, 0.02);
   rigid.force_model.c_c = 100 * rigid.axial_stiffness();
   EXPECT_LT(floor_budget(rigid).budget.contact.rms_m, 1e-9 * rigid.length);
-  // An obstacle that yields does so for the rod itself.
+  // A compliant obstacle is part of the scene, so its compliance is not an error of the force
+  // model.
   Scene yielding = over_a_floor(200, 0.02);
   yielding.obstacles.front().stiffness = 1e3 * yielding.weight_per_length().norm();
   EXPECT_EQ(floor_budget(yielding).budget.contact.rms_m, 0);

@@ -1,4 +1,4 @@
-// At which modulus a continuous rod would be nearest to a shape.
+// Tests of the effective modulus: the modulus at which the continuous rod is nearest to a shape.
 
 #include <gtest/gtest.h>
 
@@ -73,7 +73,8 @@ TEST(EffectiveModulus, IsClearOnlyIfItExplainsTheDeviation) {
   }
 }
 
-// The vertex of the parabola through the squares of the exact model's distances, from cold solves.
+// E* is compared with the vertex of a parabola through squared distances from the exact model,
+// which is solved without an initial guess.
 TEST(EffectiveModulus, IsRightToEachPrintedDigit) {
   Scene scene = heavy_scene(2, 15);
   scene.force_model.law = BendingLaw::paper;
@@ -103,7 +104,8 @@ TEST(EffectiveModulus, IsFoundBetweenClampsInFewSolves) {
       fit_effective_modulus(scene, distance_from(shape), solve_reference(scene, Model::energy));
   EXPECT_NEAR(fit.ratio, 0.6, 1e-5);
   EXPECT_EQ(fit.optimum, Optimum::clear);
-  // A scan of half a decade to both sides, and Brent's method.
+  // The limit is the number of solves of a scan over half a decade to both sides, and of Brent's
+  // method.
   EXPECT_LE(fit.solves, 22);
 }
 

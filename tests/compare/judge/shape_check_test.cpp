@@ -114,7 +114,8 @@ TEST(ShapeCheck, AFileThatIsCutOffKeepsItsFrame) {
   }
 }
 
-// Nearest to the tip of a chain that hangs farther out than the rod is a point inside the rod.
+// The chain hangs farther out than the rod, so that the point of the rod nearest to its tip is not
+// the rod's tip.
 TEST(ShapeCheck, TheEndsOfAFileAsLongAsTheRodAreTheRods) {
   Scene scene = heavy_scene(1000, 0);
   scene.force_model.points = 12;
@@ -297,7 +298,7 @@ TEST(Significance, TheTrivialShapeKeepsNaturalCurvatureAndGrippers) {
   const energy_model::Equilibrium loaded = solve_reference(scene, Model::energy);
   const std::optional<TrivialShape> trivial = trivial_shape(scene, loaded);
   ASSERT_TRUE(trivial);
-  // An arc of radius 1/1.5 to the left of its clamp.
+  // The rod without weight and loads is an arc of radius 1/1.5 m that bends to the left.
   const Eigen::Vector3d tip = trivial->rod.sample(std::vector{1.0}).points.col(0);
   EXPECT_LT((tip - Eigen::Vector3d(std::sin(1.5), 1 - std::cos(1.5), 0) / 1.5).norm(), 1e-8);
   EXPECT_GE(trivial->deflection_m, (tip - loaded.sample(std::vector{1.0}).points.col(0)).norm());

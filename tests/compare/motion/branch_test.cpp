@@ -40,7 +40,7 @@ TEST(BranchWitness, ShowsFoldsBifurcationsAndLettingGo) {
   }
 }
 
-// The ends that lie this far beyond the step that is missed are not the reason that it is.
+// A branch end that is this far beyond the missed step does not explain why the step was missed.
 TEST(BranchWitness, ShowsNoEndThatIsFarAway) {
   constexpr double far = 0.1;
   for (const double way : {missed_step, 8 * missed_step, 0.125, 1.0}) {

@@ -25,7 +25,7 @@ TrackOptions frames_at(double rate) {
   return options;
 }
 
-/// data/scenes/swung_rod.toml up to its second pose, so much slower.
+/// Returns data/scenes/swung_rod.toml up to its second pose, with all times multiplied by `slower`.
 Scene swung(double slower) {
   Scene scene = load_scene(std::string(DLO_DATA) + "/scenes/swung_rod.toml");
   std::vector<Pose> poses = scene.grippers.front().trajectory.poses();
@@ -61,7 +61,8 @@ TEST(TrajectoryMotion, AccelerationsJumpJustAfterAPose) {
   }
 }
 
-// The balance of the frames, whose gravity potential is zero at the same point as the track's.
+// Checks the energy balance of the frames. Their gravity potential is zero at the same point as
+// that of the quasi-static track.
 TEST(DynamicTrack, KeepsTheBalanceOfEnergyAndWork) {
   const Scene scene = swung(1);
   const TrackOptions options = frames_at(50);
@@ -86,7 +87,8 @@ TEST(DynamicTrack, KeepsTheBalanceOfEnergyAndWork) {
   }
 }
 
-// m (a - g), a that of the cubic from rest to rest; a rod so stiff that it bends by less than 1e-4.
+// The gripper's force is m (a - g), where a is the acceleration of the cubic path from rest to
+// rest. The rod is so stiff that it bends by less than 1e-4.
 TEST(DynamicTrack, AGripperCarriesTheMassOfAStiffRod) {
   const Scene scene = parse_scene(
       "[rod]\nlength = 0.5\nbending_stiffness = 1000\nmass_per_length = 0.4\n"
@@ -143,7 +145,8 @@ Scene moved_in_water(const std::string& drags) {
       "water.toml");
 }
 
-// By 1/2 rho C d across the rod, as the option of that name.
+// The medium's drag across the rod is 1/2 rho C d per squared velocity, as that of the option
+// --quadratic-drag.
 TEST(DynamicTrack, AMediumAtRestDragsTheMovingRod) {
   const std::string still = "velocity = [0, 0, 0]\nnormal_drag = 1.5\n";
   const auto last_points = [](const std::string& drags, double quadratic) {
@@ -186,7 +189,8 @@ TEST(DynamicTrack, ARodThatIsCarriedEvenlyStaysAsAtRest) {
   EXPECT_GT(started.quasi_static.largest, 1e-3);
 }
 
-// A damped rod that a slow clamp has turned for a while is where one is that begins then.
+// A clamp rotates a damped rod slowly. A simulation that begins in the middle of the motion agrees
+// with one that began earlier.
 TEST(DynamicTrack, BeginsInTheMiddleAsIfItHadBegunBefore) {
   const Scene scene = swung(20);
   const RodDamping damping{.material = 0.02, .air = 0.1};
@@ -205,8 +209,8 @@ TEST(DynamicTrack, BeginsInTheMiddleAsIfItHadBegunBefore) {
   EXPECT_LT(apart(late.frames.size() - 1), 1e-4 * scene.length);
 }
 
-// A curved wire and a straight one between two clamps, each turned by a wrist: still again, they
-// are at rest.
+// A wrist rotates one end of a curved wire, or of a straight one between two clamps. Some time
+// after the rotation the wire is in equilibrium.
 TEST(DynamicTrack, AWristTurnsTheWire) {
   const std::string wrist =
       "[[gripper]]\nat = 0\ndirection = [1, 0, 0]\n"

@@ -95,7 +95,7 @@ TEST(MotionFit, FindsStiffnessAndDampingOfARodThatMovesAtFirst) {
     EXPECT_LT(off(fit.quadratic->value, made.damping.quadratic), 0.3) << seed;
     EXPECT_LT(fit.rms / (marker_noise * std::sqrt(3)), 1.1) << seed;
     EXPECT_NEAR(fit.noise, marker_noise, 0.1 * marker_noise) << seed;
-    // With the stiffness of the scene as given the limit of the misfit is not met.
+    // With the stiffness as given in the scene the misfit exceeds its limit.
     EXPECT_GT(fit.given_rms, 1.1 * std::sqrt(3) * marker_noise) << seed;
   }
 }

@@ -23,8 +23,9 @@ Scene loaded_aside() {
   return scene;
 }
 
-// Points with half of their segments' masses, and joints of EI / h, in space: two discretisations
-// that share nothing come together, of second order.
+// The polygon's points have half of the masses of their segments, and its joints the stiffness EI /
+// h. Its frequencies converge at second order to those of the continuous rod, which are computed
+// independently.
 TEST(SceneModes, OfThePolygonConvergeToThoseOfTheRod) {
   Scene scene = loaded_aside();
   std::array<double, 3> before{};
@@ -38,7 +39,7 @@ TEST(SceneModes, OfThePolygonConvergeToThoseOfTheRod) {
       EXPECT_GT(mode.polygon_likeness, 0.99);
       const double off = *mode.polygon_omega / mode.rod.omega() - 1;
       EXPECT_LT(std::abs(off), 6.0 * static_cast<double>(k + 1) / (points * points)) << points;
-      // With 1 / (N - 1.5)^2 in place of 1 / N^2.
+      // The error is proportional to 1 / (N - 1.5)^2, not to 1 / N^2, so that the ratio is above 4.
       if (points > 24 && k == 2) {
         EXPECT_NEAR(before[k] / off, 4.2, 0.25) << points;
       }
@@ -118,7 +119,8 @@ TEST(SteppedMode, IsWhatTheSimulationDoes) {
   const SteppedMode mode = stepped_mode(swing.stiffness, physical.c_F, physical.c_h, rate);
   EXPECT_TRUE(mode.is_stable);
   force_model::Simulation simulation = swing.simulation(scene, 1e-5);
-  // Times at which it goes through its rest, between steps by interpolation, and speeds there.
+  // Times at which the mode's coordinate passes zero, interpolated between steps, and the speeds
+  // there.
   std::vector<double> times;
   std::vector<double> speeds;
   double before = swing.along(simulation);
@@ -139,7 +141,8 @@ TEST(SteppedMode, IsWhatTheSimulationDoes) {
               0.01);
 }
 
-// At the rate that is told steps stand; a little slower, which is larger steps, they do not.
+// Steps at the reported least rate are stable. At a slightly lower rate, with longer steps, they
+// are not.
 TEST(SceneModes, PhysicalStepsAreStableFromTheirLeastRateOn) {
   const double least = scene_modes(stepped_scene(0, 0), {.count = 1}).physical->least_rate;
   for (const double share : {0.97, 1.03}) {
@@ -158,8 +161,8 @@ TEST(SceneModes, PhysicalStepsAreStableFromTheirLeastRateOn) {
   }
 }
 
-// A swing exp(-zeta omega_0 t) cos(omega t), omega = omega_0 (1 - zeta^2)^(1/2), that is looked at
-// at the rate of the steps: sum and product of its two multipliers are those of Formula 19.
+// An oscillation exp(-zeta omega_0 t) cos(omega t), omega = omega_0 (1 - zeta^2)^(1/2), sampled
+// once per step: the sum and the product of its two multipliers give c_F and c_h of Formula 19.
 TEST(SteppedMode, HasTheDampingOfTheSwingThatItStepsThrough) {
   constexpr double rate = 200;
   for (const double omega_0 : {1.0, 30.0, 300.0}) {

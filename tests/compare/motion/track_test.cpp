@@ -67,8 +67,11 @@ double missed(const Scene& scene, double rate) {
   return std::abs(last.work - (last.energy.total() - result.frames.front().energy.total()));
 }
 
-/// The trapezoidal rule's error is of second order in the time of a frame.
-/// @param most  at `rate` [J]; @param off  of the ratio from 4 at twice the rate
+/// Expects that the error of the energy balance, by the trapezoidal rule, is of second order in the
+/// duration of a frame.
+/// @param most  largest error at `rate` [J]
+/// @param off   allowed difference from 4 of the ratio of the errors at `rate` and at twice the
+/// rate
 void expect_second_order(const Scene& scene, double rate, double most, double off) {
   const double coarse = missed(scene, rate);
   const double fine = missed(scene, 2 * rate);
@@ -165,8 +168,9 @@ TEST(Track, CountsTheWorkOfAnObstacleThatMoves) {
   EXPECT_NEAR(last.work, last.energy.total() - result.frames.front().energy.total(), 2e-3);
 }
 
-// At 1000 frames a second half a step comes to within 1e-5 of a frame of where the rod begins to
-// lie, at others not; either way it touches, lies and comes back on one branch.
+// At 1000 frames per second half a step comes to within 1e-5 of a frame of the time at which a
+// point contact becomes an interval; at the other rates it does not. In all cases the rod touches,
+// lies and comes back on one branch.
 TEST(Track, KeepsItsBranchWhereAPointBeginsToLie) {
   constexpr double slowest = 100;
   std::vector<double> times;
@@ -189,8 +193,8 @@ TEST(Track, KeepsItsBranchWhereAPointBeginsToLie) {
   }
 }
 
-// The rod snaps once. The energy that the snap releases is the difference to the work, and is the
-// same at twice the rate within the bounds of both.
+// The rod snaps once. The released energy is the work of the grippers minus the change of energy,
+// and agrees at twice the frame rate within the bounds of both.
 TEST(Track, TellsASnapByTheEnergyThatIsMissing) {
   const auto snap_of = [](double rate) {
     const Track result = track(drawn_off(), at_rate(rate));
@@ -212,7 +216,7 @@ TEST(Track, TellsASnapByTheEnergyThatIsMissing) {
   EXPECT_GT(slow.released, 0.9);
   EXPECT_LE(std::abs(slow.released - fast.released), slow.released_bound + fast.released_bound);
   EXPECT_LT(fast.released_bound, slow.released_bound);
-  // From the fold itself, to a 1024th of a frame.
+  // The released energy is measured from the fold, whose time is known to 1/1024 of a frame.
   EXPECT_LT(slow.released_bound, 1e-3 * slow.released);
   for (const TrackEvent& snap : {slow, fast}) {
     EXPECT_GT(snap.smallest_eigenvalue, 0);
@@ -220,7 +224,8 @@ TEST(Track, TellsASnapByTheEnergyThatIsMissing) {
   }
 }
 
-/// An S between two clamps, one of which is turned until it has turned over, out of its plane.
+/// An S-shaped rod between two clamps, one of which rotates until the rod has turned over, out of
+/// its plane.
 Scene turned_over() {
   return parse_scene(
       "[rod]\nlength = 1\nbending_stiffness = 1\nmass_per_length = 0\n[[gripper]]\nat = 0\n"
@@ -249,8 +254,9 @@ TEST(Track, GoesThroughNoObstacleInOneStep) {
   }
 }
 
-// At five frames a second the rod is swung too far for Newton's method in one step; at the times of
-// every frame it is where a track at a high rate has it.
+// At five frames per second the rod moves too far for one step of Newton's method, so steps are
+// repeated with smaller ones. At the times of the frames the result agrees with that of a high
+// rate.
 TEST(Track, RepeatsAFrameThatItHasLostInSmallerSteps) {
   const Scene scene = load_scene(std::string(DLO_DATA) + "/scenes/swung_rod.toml");
   const Track coarse = track(scene, at_rate(5));
@@ -266,7 +272,7 @@ TEST(Track, RepeatsAFrameThatItHasLostInSmallerSteps) {
   }
 }
 
-// After the last pose there is no motion and no work, in either model.
+// After the last pose nothing moves and no work is done, in either model.
 TEST(Track, GoesOnAtRestBeyondTheLastPose) {
   TrackOptions options = at_rate(20);
   options.to = 1.5;
@@ -296,7 +302,7 @@ TEST(Track, RefusesWhatDoesNotMove) {
   EXPECT_THROW((void)track(swung(), options), InputError);
 }
 
-// The force model, slow enough to keep up, is as far off as at rest.
+// If the motion is slow enough for the force model, its error is the same as at rest.
 TEST(Track, RunsTheForceModelBesideIt) {
   Scene scene = swung();
   scene.force_model.points = 16;
@@ -326,7 +332,8 @@ TEST(Track, ErrorsOfTheForceModelAreSharesOfTheLength) {
   for (const TrackFrame& frame : result.frames) {
     const Eigen::Matrix3Xd apart = frame.force->points - frame.shape.points;
     const double share = std::sqrt(apart.colwise().squaredNorm().mean()) / scene.length;
-    // Points of the rod and of the polygon's segments, at other arc lengths than its own.
+    // The error is computed at the points of the rod and of the polygon's segments, here at other
+    // arc lengths.
     EXPECT_NEAR(frame.force->error_over_length, share, 0.1 * share + 1e-4) << frame.time;
     sum += share;
   }

@@ -71,7 +71,7 @@ TEST(MovingReference, HoldsTheWeightBeforeAndAfterTheMovement) {
   EXPECT_LT(reference.energy_error, 1e-3);
   ASSERT_EQ(reference.frames.size(), reference.points.size());
   EXPECT_LT((reference.forces.back() - Eigen::Vector3d(0, moving_weight(), 0)).norm(), 1e-5);
-  // The hanging rod has gone where the gripper has.
+  // At the end the hanging rod has been displaced as far as its gripper.
   const Eigen::RowVectorXd across = reference.points.back().row(0);
   EXPECT_LT((across.array() - MovingChoices{}.distance).abs().maxCoeff(), 1e-5);
   const MovingError relative =
@@ -91,7 +91,7 @@ TEST(MovingReport, PutsPrintedNumbersBesideItsOwn) {
   EXPECT_EQ(rows.size(), 26U);
   EXPECT_EQ(rows[0].printed->steps, 116121);
   EXPECT_EQ(rows[2].experiment.variant, MovingVariant::dynamic_absolute);
-  // The printed rows have no distance from themselves.
+  // If all results equal the printed values, the distance from the printed values is zero.
   for (MovingRow& row : rows) {
     if (!row.printed) continue;
     row.run = {.status = MovingStatus::finished,

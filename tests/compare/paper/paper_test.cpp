@@ -57,7 +57,7 @@ TEST(PaperReport, MeasuresTheEffectiveModulusAtRestAndOnTheWay) {
   // A cubic law's stiffness grows like the load to the power of 2/3 while the rod is hardly bent.
   EXPECT_NEAR(report.variants[1].modulus.ratio / report.variants[0].modulus.ratio,
               std::pow(10, 2. / 3), 0.5);
-  // Hooke's law with consistent books is the rod.
+  // The law hooke with the convention `consistent` reproduces the continuous rod.
   const ModulusVariant& hooke = report.variants.back();
   EXPECT_EQ(hooke.settings.law, BendingLaw::hooke);
   EXPECT_EQ(hooke.settings.bookkeeping, Bookkeeping::consistent);

@@ -130,12 +130,12 @@ TEST(SolutionPicture, ShowsCurvatureWithTheSenseOfTurning) {
   const std::vector<double> curvature = curve_of(drawn, "solution_1").y;
   ASSERT_EQ(curvature.size(), 101U);
   for (std::size_t i = 0; i < 90; ++i) {
-    // It sinks to the right, so it turns to the right.
+    // The rod sinks to the right, so it bends to the right.
     EXPECT_NEAR(curvature[i], -solution.curvature[i], 1e-8 * solution.curvature[0]) << i;
   }
 }
 
-// A rod that gives way out of its scene's plane turns neither left nor right.
+// The curvature of a rod that leaves its scene's plane has no sign.
 TEST(SolutionPicture, ShowsARodThatLeavesItsPlaneFromTwoSidesAndItsCurvatureWithoutASense) {
   Scene scene = test::heavy_scene(1, 0);
   scene.grippers.push_back(
@@ -197,7 +197,7 @@ TEST(SweepPicture, DrawsLinesForAFewValuesOfTheSecondFieldAndElseAMap) {
   EXPECT_THROW((void)panel(), InputError);
 }
 
-// Also of fields whose values fall: cells meet, and none is between them.
+// Adjacent cells of the map share their edges, also if the values of a field decrease.
 TEST(SweepPicture, HasAMapWhoseCellsMeet) {
   const SweptField x{.column = "gamma", .values = {"1", "10", "100"}, .logarithmic = true};
   const SweptField y{.column = "length", .values = {"7", "6", "5", "4", "3", "2", "1"}};

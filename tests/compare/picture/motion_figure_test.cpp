@@ -17,7 +17,7 @@
 namespace dlo::compare {
 namespace {
 
-/// A rod between two clamps, one of which is led; `way` are its places at 0 and 1 s.
+/// A rod between two clamps, one of which moves; `way` is its poses at 0 and 1 s.
 Scene led(const std::string& way) {
   return parse_scene(
       "name = \"led\"\ngravity = [0, 0, -9.81]\n[rod]\nlength = 0.5\nbending_stiffness = 2e-3\n"
@@ -37,7 +37,7 @@ Scene in_space() {
 
 constexpr double lag = 0.05;
 
-/// The rod at rest at `time - late`, displaced.
+/// Returns a recording of the rod at rest at `time - late`, displaced by `up`.
 MarkerMotion recording(const Scene& scene, double late, double up) {
   MarkerMotion motion{.file = "made.csv", .positions = {}};
   const std::vector<double> s = {0.1, 0.2, 0.3, 0.4};
@@ -91,7 +91,7 @@ TEST(WorstFrame, HasTheRecordingsPointsOnTheRodOfThatTime) {
               1e-6);
   }
   EXPECT_LT((series_of(drawing, "worst").points.col(0) - whiskers.col(10)).norm(), 1e-12);
-  // The grippers are where they are then.
+  // The grippers are drawn at their positions at the time of the worst frame.
   EXPECT_LT(
       (series_of(drawing, "rod").points.rightCols<1>() - Eigen::Vector3d(0.44, 0, 0.1)).norm(),
       1e-6);
@@ -108,7 +108,8 @@ TEST(WorstFrame, OfALateRecordingIsTheRodOfAnEarlierTime) {
   EXPECT_EQ(earlier.title, "the rod 50 ms earlier");
   const FrameShapes& shapes = check.worst_shapes;
   for (Eigen::Index i = 0; i < 4; ++i) {
-    // At multiples of 0.1 m of 0.5 m, which 201 points have.
+    // The markers are at multiples of 0.1 m on a rod of 0.5 m; the 201 points of the drawn rod
+    // include these.
     EXPECT_LT((earlier.points.col(40 * (i + 1)) - shapes.recorded.points.col(i)).norm(), 1e-4);
   }
 }
@@ -126,14 +127,15 @@ TEST(MotionPicture, HasTheErrorOfEachFrameAndWhatIsLeftWithoutTheLag) {
   }
   const PlottedCurve* left = curve_with(panel, "RMS if it were not 50 ms late");
   ASSERT_NE(left, nullptr);
-  // The first frame shows a rod of before the model's first time.
+  // With the lag removed, the first recorded frame is earlier than the model's first time and is
+  // omitted.
   ASSERT_EQ(left->x.size(), rms->x.size() - 1);
   for (const double distance : left->y) EXPECT_LT(distance, 0.1);
   EXPECT_EQ(curve_with(panel, "the worst frame")->y.front(), *std::ranges::max_element(rms->y));
   EXPECT_EQ(curve_with(error_panel(checked(in_plane(), 0, 0.02)), "if it were not"), nullptr);
 }
 
-// A rod that hangs straight down and is led along itself.
+// A rod that hangs straight down and is moved vertically.
 TEST(MotionPicture, OfAStraightRodHasFiniteLimits) {
   const Scene scene = parse_scene(
       "name = \"straight\"\ngravity = [0, 0, -9.81]\n[rod]\nlength = 0.5\nbending_stiffness = "

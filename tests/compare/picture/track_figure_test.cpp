@@ -40,7 +40,8 @@ TEST(TrackFigures, StripHasTheShapesOfItsFrames) {
     EXPECT_EQ(curves.at("energy_" + std::to_string(i))->x.size(), samples) << i;
   }
   EXPECT_FALSE(curves.contains("energy_10"));
-  // 41 frames: the fifth of nine is the one in the middle, at one scale in its cell.
+  // There are 41 frames, so the fifth of nine cells shows the middle frame; its drawing is only
+  // translated.
   const TrackFrame& middle = motion.followed.frames.at(20);
   const PlottedCurve& drawn = *curves.at("energy_5");
   for (std::size_t k = 1; k < samples; ++k) {

@@ -14,8 +14,8 @@ namespace {
 
 using std::numbers::pi;
 
-/// All pairs of segments, each by the least over a fine grid of its two shares and then, from
-/// there, by one after the other.
+/// Returns the smallest distance over all pairs of segments. The distance of a pair is minimised
+/// over a fine grid of positions on both segments, and from there by alternating minimisation.
 std::optional<double> nearest_of_all_pairs(const Shape& shape, double diameter) {
   std::optional<double> nearest;
   const auto at = [&](Eigen::Index i, double share) -> Eigen::Vector3d {
@@ -93,7 +93,7 @@ TEST(SelfCrossing, OfEqualDistancesTheFirstAlongTheRodCounts) {
   EXPECT_LT(crossing->first, 2);
 }
 
-// With all pairs 2e5 points would be 2e10 of them, minutes.
+// A search of all pairs of 2e5 points would compare 2e10 pairs, which takes minutes.
 TEST(SelfCrossing, OfManyPointsItDoesNotLookAtAllPairs) {
   const double length = 1.25 * std::hypot(2 * pi, 0.1);
   Shape fine = {equal_arc_lengths(length, 200001), Eigen::Matrix3Xd(3, 200001)};
@@ -105,7 +105,8 @@ TEST(SelfCrossing, OfManyPointsItDoesNotLookAtAllPairs) {
   const auto crossing = self_crossing(fine, 0.11);
   const std::chrono::duration<double> spent = std::chrono::steady_clock::now() - begin;
   ASSERT_TRUE(crossing);
-  // Two turns of a coil are nearest across both: rise times the cosine of its pitch.
+  // The smallest distance of two adjacent turns of a coil is perpendicular to both: the pitch times
+  // the cosine of the pitch angle.
   EXPECT_NEAR(crossing->distance, 0.1 * 2 * pi / std::hypot(2 * pi, 0.1), 1e-6);
   EXPECT_NEAR(crossing->second - crossing->first, 2 * pi, 0.03);
   EXPECT_LT(spent.count(), 10);

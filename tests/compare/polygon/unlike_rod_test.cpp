@@ -69,7 +69,7 @@ TEST(UnlikeRod, ForceModelAndChainComeToRestInTheSameShape) {
     const Solution chain = solve(scene, Model::chain);
     const Solution force = solve(scene, Model::force);
     EXPECT_TRUE(force.neglected.empty());
-    // The single clamp's chain does not stretch.
+    // The chain of a scene with a single clamp has inextensible segments.
     const double stretch =
         two_clamps ? 0 : scene.mass() * scene.gravity.norm() / scene.axial_stiffness();
     EXPECT_LT((force.shape.points - chain.shape.points).cwiseAbs().maxCoeff(), 1e-6 + stretch);

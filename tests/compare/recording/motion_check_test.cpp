@@ -56,7 +56,8 @@ void add_row(MarkerMotion& motion, double time, const std::vector<double>& marke
   }
 }
 
-/// The rod at rest at `time - lag`, by a solve of its own for each time.
+/// Returns a recording of the rod at rest at `time - lag`, which is solved separately for each
+/// time.
 MarkerMotion at_rest(const Scene& scene, const std::vector<double>& times,
                      const std::vector<double>& markers, double lag = 0) {
   MarkerMotion motion{.file = "made.csv", .positions = {}};

@@ -41,7 +41,7 @@ TEST(Layers, SixStrandsAboutOneHaveTheirSteinerTerm) {
   const Layer core{.youngs_modulus = E, .density = 7800, .strands = 1, .strand_diameter = d};
   const Layer ring{.youngs_modulus = E, .density = 7800, .strands = 6, .strand_diameter = d};
   const LayeredSection wire = layered_section({core, ring});
-  // By each strand's own place.
+  // The bonded stiffness includes the distance y of each strand from the neutral axis.
   double bonded = E * disc_moment(d);
   for (int k = 0; k < 6; ++k) {
     const double y = d * std::sin(2 * std::numbers::pi * k / 6 + 0.3);

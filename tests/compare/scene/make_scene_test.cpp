@@ -91,8 +91,8 @@ TEST(MakeScene, TakesPosesAndAllElementsOfAList) {
 TEST(MakeScene, RefusesWhatAFileMayNotSayInTheSameWords) {
   struct Wrong {
     SceneField field;
-    std::string said;   ///< in the file
-    std::string meant;  ///< by it
+    std::string said;   ///< text in the correct file
+    std::string meant;  ///< text that replaces it, with the same error as the field
   };
   const std::vector<Wrong> all = {
       {{"rod.length", "30 inch"}, "length = \"30 cm\"", "length = \"30 inch\""},

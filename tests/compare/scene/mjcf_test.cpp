@@ -145,7 +145,8 @@ TEST(Mjcf, MuJoCosOwnPointsPassWithoutTheirLastEnd) {
   // The last joint turns by a quarter of what the one before does, within its own size:
   // w h^2 / 2 / (EI / h), with w l = 0.567 N.
   EXPECT_LT((whole.points.col(20) - end).norm(), 0.05 * 0.567 * 0.05 * 0.05 / 2 * 0.05 / 0.02413);
-  // All bodies of the model, the world's first: it is not at the first segment's place here.
+  // All bodies of the model. The first one is the world, whose position differs from the start of
+  // the first segment.
   MeasuredShape all = shape;
   all.points.resize(3, 21);
   all.points << Eigen::Vector3d(0, 0, 0.3), shape.points;

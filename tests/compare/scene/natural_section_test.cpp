@@ -44,7 +44,7 @@ TEST(NaturalSection, TheMeanCurvatureOfAPartCountsItsSections) {
   EXPECT_NEAR(scene.natural_curvature(0.19, 0.21).z(), 40, 1e-10);
   scene.natural_strain.y() = 10;
   scene.natural_variation = {{0, 5}};
-  // In a section its own counts, and that alone.
+  // Within a section its own natural curvature replaces that of the rod.
   EXPECT_NEAR(scene.natural_curvature(0.2, 0.22).z(), 80, 1e-10);
   EXPECT_NEAR(scene.natural_curvature(0, 0.1).z(), 10 + 5 * (2 * 0.05 / 0.24 - 1), 1e-10);
   EXPECT_FALSE(scene.without_natural_strain().naturally_bent());

@@ -48,7 +48,7 @@ TEST(Quantity, EveryUnitHasItsFactor) {
       EXPECT_NEAR(parse_quantity("3 " + unit, dimension), 3 * factor, 3e-15 * factor) << unit;
       list += (list.empty() ? "" : ", ") + unit;
     }
-    // A unit that is added is added here too.
+    // This list must be extended when a unit is added.
     EXPECT_EQ(list, known_units(dimension));
   }
 }
@@ -78,7 +78,7 @@ TEST(Quantity, UnitsMayBeSpelledAsTheFieldDoes) {
   EXPECT_DOUBLE_EQ(parse_quantity("3 Nm/rad", Dimension::joint_stiffness), 3);
   EXPECT_DOUBLE_EQ(parse_quantity("3 \xc2\xb5m", Dimension::length), 3e-6);
   EXPECT_DOUBLE_EQ(parse_quantity("180 \xc2\xb0", Dimension::angle), std::numbers::pi);
-  // A blank is a product.
+  // A blank between two units would mean their product.
   EXPECT_EQ(message("3 m m", Dimension::length).find("unknown unit"), 0U);
   EXPECT_EQ(message("3 m N", Dimension::force).find("unknown unit"), 0U);
 }

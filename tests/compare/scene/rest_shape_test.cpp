@@ -114,7 +114,8 @@ TEST(RestShape, ARodThatIsHeldByOneEndComesBackToTheStatedError) {
   EXPECT_LT(helix.largest_error, 5e-5 * helix_length);
   for (const Model model : {Model::energy, Model::exact}) {
     EXPECT_LT(farthest(bent, model, on_shaft), shaft.largest_error + 1e-9) << to_string(model);
-    // Arc lengths of points are not known, and slide by no more than they are off.
+    // The arc lengths of the points are unknown: they may be shifted along the helix by as much as
+    // the shape is inaccurate.
     EXPECT_LT(farthest(resting_scene(helix, helix_length), model, on_helix),
               2 * helix.largest_error)
         << to_string(model);
@@ -180,7 +181,7 @@ Scene helix_scene(double pitch, double gravity) {
   const double c = pitch / (2 * std::numbers::pi);
   const Eigen::Vector3d t = Eigen::Vector3d(0, helix_radius, c).normalized();
   Gripper clamp{.at = 0, .position = {helix_radius, 0, 0}, .direction = t};
-  // Towards the axis.
+  // d1 points to the axis of the helix.
   clamp.frame = FrameHold{.d1 = Eigen::Vector3d(-1, 0, 0)};
   scene.grippers = {clamp};
   return scene;
@@ -199,7 +200,8 @@ TEST(Helix, ReturnsItsOwnPointsOfEitherHand) {
   }
 }
 
-/// d1 there, which turns from the direction to the axis by `extra` [1/m] more than the helix does.
+/// Returns d1 at an arc length of the helix. d1 points to the axis, rotated about the tangent by
+/// `extra` [1/m] times s.
 Eigen::Vector3d d1_on_helix(double s, double extra) {
   const double c = helix_pitch / (2 * std::numbers::pi);
   const double a = s / std::hypot(helix_radius, c);
@@ -266,8 +268,8 @@ TEST(RestFrames, OfAFlatSectionThatTwistsOtherwiseComeBackToTheStatedErrors) {
 }
 
 TEST(RestFrames, ConvergeWithTheNumberOfPoints) {
-  // Arcs are as many as the points can say: 6, 12, 24. Of constant strain they leave the third
-  // power of their length of points, the second of directions.
+  // The points determine 6, 12 and 24 arcs of constant strain. The remaining error of points is of
+  // third order in the length of an arc, that of directions of second order.
   std::vector<Eigen::Vector2d> away;
   for (const int count : {22, 43, 86}) {
     const RestShape shape = fit_rest_shape(framed_helix(count, 20), helix_length);

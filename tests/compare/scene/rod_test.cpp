@@ -283,7 +283,7 @@ TEST(ScenesStrip, HasSectionsOfItsOwnOrRoundOnes) {
   const energy_model::Problem problem = energy_problem(round);
   EXPECT_FALSE(problem.sections[0].bending_stiffness_2.has_value());
   EXPECT_DOUBLE_EQ(problem.sections[0].torsional_stiffness, 3 / 1.3);
-  // A flat part alone makes it a strip.
+  // One section with two stiffnesses suffices to give the rod material directors.
   const Scene flattened = scene_of(by_stiffness + clamp + part + "bending_stiffness = [1, 2]\n");
   EXPECT_TRUE(flattened.has_material_directors());
   EXPECT_DOUBLE_EQ(energy_problem(flattened).sections[0].torsional_stiffness, 4.0 / 3 / 1.3);
@@ -322,7 +322,7 @@ TEST(ScenesLoad, MayBeAMassThatHangsThere) {
   expect_message(rod + "mass = -1\n", {"load.mass = -1", "> 0"});
   expect_message(rod + "mass = \"1 lb\"\n", {"load.mass", "kg, g"});
   expect_message(rod, {"load.force: missing"});
-  // Where Gamma is varied its weight follows gravity.
+  // If gamma is varied, the weight of a load's mass changes with gravity.
   const SceneTemplate base(rod + "mass = 1\n", "my.toml");
   const Scene light = base.with({{"gamma", "1"}});
   EXPECT_NEAR(light.loads.at(0).force.norm(), light.gravity.norm(), 1e-15);

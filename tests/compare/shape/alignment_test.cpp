@@ -35,8 +35,9 @@ TEST(Alignment, RecoversARandomRigidMotionOfSevenUnevenPointsFromEitherEnd) {
       const Alignment found = align(moved, energy.sample, 1, any_motion);
       EXPECT_EQ(found.reversed, backwards) << gamma << ", " << round;
       EXPECT_LT(found.rms_m, 1e-7) << gamma << ", " << round;
-      // How far the recovered motion takes the rod's points from where they were. A part of a
-      // stiff rod may slide along itself by much more than the distances across it.
+      // Largest distance of the rod's points, after the recovered motion, from their original
+      // positions. Part of a stiff rod may slide along itself by much more than the distances
+      // across it.
       EXPECT_LT(largest_distance(found.pose.applied(pose.applied(truth.points)), truth.points),
                 2e-3)
           << gamma << ", " << round;
@@ -145,7 +146,7 @@ TEST(Alignment, FreedomsOfTheFrame) {
       const MeasuredShape shape{"f", pose.applied(energy.sample(s).points), {}};
       return align(shape, energy.sample, 1, {.pose = freedom, .arc_lengths = rule}).rms_m;
     };
-    // Chord lengths of twelve points know the arc lengths to 1e-4.
+    // Chord lengths of twelve points approximate the arc lengths to 1e-4.
     const double zero = rule == ArcLengths::chord ? 1e-4 : 1e-8;
     EXPECT_LT(rms_with(PoseFreedom::translation, shifted), zero);
     EXPECT_GT(rms_with(PoseFreedom::translation, turned), 0.1);

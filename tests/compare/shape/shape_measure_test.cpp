@@ -121,7 +121,7 @@ TEST_P(AnyRightShape, DoublePointsDiluteNothing) {
     Eigen::Matrix3Xd points = right.points(right.s);
     points.col(11).z() += 0.02;
     const double before = right.check(points, column_s()).deviation.rms_m;
-    // Each of the first ten a hundred times, 1e-8 apart.
+    // Each of the first ten points is given a hundred times, 1e-8 apart.
     Right many = right;
     std::vector<double> s;
     for (std::size_t i = 0; i < right.s.size(); ++i) {
@@ -134,7 +134,7 @@ TEST_P(AnyRightShape, DoublePointsDiluteNothing) {
   });
 }
 
-// However many points go out and back at one place of the rod.
+// A spike at one point of the rod counts, however many points form it.
 TEST_P(AnyRightShape, ASpikeCounts) {
   for_each([](const Right& right) {
     Right spiked = right;
@@ -162,7 +162,8 @@ TEST_P(AnyRightShape, AStretchedPartShows) {
     const ShapeCheck check = right.check(right.points(at), column_s());
     EXPECT_NEAR(check.deviation.max_m, 0.03, 0.003);
     EXPECT_NEAR(check.deviation.tip_m, 0.03, 1e-6);
-    // Given arc lengths: the stretch grows over the part and stays beyond. Else it is spread.
+    // With given arc lengths the displacement grows over the stretched part and remains constant
+    // beyond it. Without them it is spread over the rod.
     const double share = column_s() ? 1 - b + (b - a) / 3 : 1.0 / 3;
     EXPECT_NEAR(check.deviation.rms_m, 0.03 * std::sqrt(share), column_s() ? 5e-4 : 4e-3);
     EXPECT_FALSE(passes(check, 0.01));
@@ -229,7 +230,7 @@ TEST(ShapeMeasure, PointsPastTheTipCount) {
       EXPECT_NEAR(check.deviation.max_m, 0.1, 1e-6);
       EXPECT_NEAR(check.deviation.tip_m, 0.1, 1e-6);
       EXPECT_EQ(check.worst_point, 22);
-      // Spread evenly the excess is 0.1 s.
+      // If the excess length is spread evenly, the deviation at s is 0.1 s.
       EXPECT_GT(check.deviation.rms_m, 0.05);
       EXPECT_TRUE(says(check.hint, {way == t ? "stretched by 10 %" : "do not continue"}));
     }

@@ -77,8 +77,8 @@ std::vector<FailureRun> failure_runs() {
                        std::initializer_list<const char*> scenes) {
     for (const char* scene : scenes) runs.push_back({scene, model, demand});
   };
-  // The energies are those of exact, each proven stable by its own second variation, but for
-  // saddle_two_loads: shooting from all of the tip's angles.
+  // The energies are those of model exact, whose second variation proves each stable. That of
+  // saddle_two_loads is from shooting with all tip angles.
   for (const char* model : {"exact", "energy"}) {
     runs.push_back({"exact_returns_higher_pp", model, Demand::energy, 16.076341});
     runs.push_back({"noconv_cpc_G0.05", model, Demand::energy, 123.388978});

@@ -60,7 +60,7 @@ Scene three_clamps() {
   return scene;
 }
 
-/// Sags onto a floor between the clamps.
+/// A rod between two clamps that sags onto a compliant floor.
 Scene yielding_floor() {
   Scene scene = two_clamps(30, {0.9, 0.2, 0});
   scene.obstacles = {{.stiffness = 20000 * scene.bending_stiffness()}};
@@ -78,7 +78,8 @@ void take_image_beside(const Eigen::Matrix3Xd& points, Solution& solution) {
   }
 }
 
-/// The chain's errors against the energy model, forces and torques over the largest of each.
+/// Errors of the chain against the energy model. Those of forces and torques are divided by the
+/// largest force and torque.
 struct Errors {
   double segment = 0;
   double shape = 0;
@@ -121,7 +122,8 @@ class SceneOfGrips : public testing::TestWithParam<NamedScene> {};
 TEST_P(SceneOfGrips, ChainConvergesToTheEnergyModelAtSecondOrder) {
   const Scene& scene = GetParam().scene;
   const energy_model::Equilibrium reference = solve_reference(scene, Model::energy);
-  // Far apart, since grips and loads fall differently among the points of each N.
+  // The two N differ by a factor of four, because the positions of grips and loads between points
+  // vary with N.
   const Errors coarse = chain_errors(scene, reference, 24);
   const Errors fine = chain_errors(scene, reference, 96);
   const auto order_of = [&](double Errors::*error) {
@@ -145,7 +147,7 @@ TEST_P(SceneOfGrips, ForceModelRestsInTheChainsPolygon) {
     const Solution force = solve_force(scene, scene.force_model);
     EXPECT_LT((chain.shape.points - force.shape.points).colwise().norm().maxCoeff(), 1e-6);
     EXPECT_NEAR(force.energy.total(), chain.energy.total(), 1e-9 * std::abs(chain.energy.bending));
-    // 1e-7 l from rest, stiff segments still pull.
+    // The force model stops 1e-7 l from rest, where its stiff segments still exert forces.
     for (std::size_t i = 0; i < chain.grippers.size(); ++i) {
       const double size = chain.grippers[i].force.norm();
       EXPECT_LT((chain.grippers[i].force - force.grippers[i].force).norm(), 1e-3 * size);
@@ -179,8 +181,8 @@ TEST(Walls, RigidOnesAreEnteredByLessThanTheStretchOfTheRod) {
   EXPECT_NEAR(chain.obstacles[0].y(), force.obstacles[0].y(), 1e-3 * weight);
 }
 
-// A rod over a rigid floor may be calmed by steps without momentum, but creeps without it: which
-// numbers of points then crept for ever depended on rounding.
+// A rod on a rigid floor may come to rest only by steps without momentum, with which it creeps.
+// Before this was fixed, rounding determined which numbers of points did not come to rest.
 TEST(Walls, EveryNumberOfPointsComesToRestOnARigidOne) {
   Scene scene = yielding_floor();
   scene.obstacles[0].stiffness = std::numeric_limits<double>::infinity();
@@ -223,14 +225,14 @@ force_model = { law = "hooke", bookkeeping = "consistent" }
   ASSERT_EQ(energy.contacts.size(), 1);
   EXPECT_EQ(energy.contacts[0].kind, energy_model::ContactKind::tip);
   EXPECT_EQ(energy.contacts[0].obstacle, 0);
-  // Its surface touches.
+  // The rod's surface touches the wall, so its axis is half a diameter away from it.
   EXPECT_NEAR(energy.shape.points(0, 100), 0.25 - 0.25e-3, 1e-12);
   EXPECT_NEAR(energy.grippers[0].force.x(), -energy.contacts[0].force.x(), 1e-12);
   ASSERT_EQ(energy.tension.size(), energy.shape.arc_length.size());
   const Eigen::Vector3d tip = energy.shape.points.col(100) - energy.shape.points.col(99);
   EXPECT_NEAR(energy.tension.back(), energy.contacts[0].force.dot(tip.normalized()),
               2e-2 * energy.contacts[0].force.norm());
-  // The force model approaches it with the square of its segments.
+  // The deviation of the force model decreases with the square of the segment length.
   const SolveOptions patient{.time_limit = 300};  // of sanitizers
   scene.force_model.points = 12;
   const double coarse = compare(scene, patient).deviation.rms_over_length;
@@ -296,7 +298,8 @@ TEST(Chain, LiesOnAFloorBelowItsPin) {
 }
 
 TEST(Chain, StretchAboveAHundredthIsNoResultUnlessAskedFor) {
-  // Hangs from a clamp inside, w l / (E A) = Gamma d^2 / (16 l^2) = 1.9 %
+  // A clamp inside the rod, from which both ends hang or stand: w l / (E A) = Gamma d^2 / (16 l^2)
+  // = 1.9 %.
   Scene scene = heavy_scene(30, -90);
   scene.grippers[0].at = 0.2;
   scene.material.youngs_modulus /= std::pow(0.1 / scene.diameter, 4);
@@ -313,7 +316,8 @@ TEST(Chain, StretchAboveAHundredthIsNoResultUnlessAskedFor) {
 }
 
 TEST(Force, RestsInTheStateOfTheChain) {
-  // From the chain's own start it swings into an arch with half as much energy again.
+  // From the chain's own initial shape the force model would converge to an arch with 1.5 times the
+  // energy.
   Scene scene =
       load_scene(std::string(DLO_DATA) + "/failures/chain_force_different_minima_N9.toml");
   for (const int points : {9, 17}) {

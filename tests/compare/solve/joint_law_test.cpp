@@ -38,7 +38,8 @@ TEST(ModelChain, HasTheLawOfOtherPrograms) {
   const Eigen::VectorXd springs =
       2 * hooke.bending_stiffness() * (h.head(n - 1) + h.tail(n - 1)).cwiseInverse();
   const auto expect = [&](std::optional<JointLaw> law, const auto& moment) {
-    // The held segment begins half a one before the clamp.
+    // The clamp holds the middle of the first segment, which therefore begins half a segment before
+    // the clamp.
     Eigen::Matrix3Xd points =
         test::chain_at_rest(h, springs, polygon.rod.loads.topRows<2>(), moment);
     points.row(0).array() -= h[0] / 2;
@@ -87,7 +88,7 @@ TEST(ModelChain, BetweenTwoClampsTooAndInItsEnergy) {
   const Solution plain = solve(scene, Model::chain);
   EXPECT_EQ(plain.shape.points, hooke.shape.points);
   EXPECT_NEAR(plain.energy.bending, hooke.energy.bending, 1e-12 * plain.energy.bending);
-  // The linear law's potential is the lower one of each shape, and so is its least sum.
+  // For any shape the potential of the linear law is lower, so its minimum is lower too.
   EXPECT_LT(linear.energy.total(), hooke.energy.total());
   EXPECT_GT((linear.shape.points - hooke.shape.points).colwise().norm().maxCoeff(), 1e-4);
 }

@@ -48,7 +48,7 @@ TEST(Linking, AShapeThatLostTurnsIsNotVerified) {
       EXPECT_TRUE(says(error.what(), {"not verified: the grips hold 2.000 turns"}));
     }
   }
-  // Whatever a solver returns.
+  // Calls lost_turns() with turns as a solver might return them.
   EXPECT_EQ(lost_turns({{.end = 1, .held = 2, .twist = 0.9, .writhe = 1.1}}), "");
   EXPECT_NE(lost_turns({{.end = 1, .held = 2.5, .twist = 0.4, .writhe = 1.1}}), "");
   EXPECT_EQ(
@@ -60,8 +60,8 @@ TEST(Linking, AShapeThatLostTurnsIsNotVerified) {
   EXPECT_NE(lost_turns({{.end = 1, .held = -1.25, .twist = 0.25, .writhe = 0.51}}), "");
 }
 
-// The end's direction passes the opposite of the first one's: one turn more that is held, none
-// lost.
+// The direction of the last clamp passes the opposite of the first clamp's direction. The
+// prescribed number of turns then jumps by one, and no turn is lost.
 TEST(Linking, OpposingClampsLoseNoTurns) {
   Scene before = twisted_scene(0.4, 0);
   before.grippers.back().direction = Eigen::Vector3d(-1, 0.1, 0).normalized();

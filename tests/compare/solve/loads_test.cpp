@@ -93,7 +93,7 @@ TEST(Loads, DistributedInsteadOfTheWeightBendAlikeInEveryModel) {
     const Solution other = solve(loaded, model);
     EXPECT_LT(apart(one, other), model == Model::force ? 1e-7 : 1e-12);
     EXPECT_NEAR(other.energy.gravity, 0, 1e-12);
-    // Steps end where the force model is nearly at rest.
+    // The steps of the force model end at a small distance from rest.
     const double rest = model == Model::force ? 1e-6 : 1e-9;
     EXPECT_NEAR(other.energy.load, one.energy.gravity, rest * std::abs(one.energy.gravity));
     EXPECT_LT((other.grippers[0].force - one.grippers[0].force).norm(),
@@ -167,7 +167,7 @@ tangential_drag = 0.02
                                   "my.toml");
   ASSERT_TRUE(scene.drag.has_value());
   EXPECT_NEAR(scene.drag->velocity.x(), 1, 1e-15);
-  // 1/2 rho C d v^2 across, pi times that along.
+  // The drag is 1/2 rho C_n d v^2 across the rod, and 1/2 rho C_t pi d v^2 along it.
   EXPECT_NEAR(scene.drag->force({0, 1, 0}).x(), 0.5 * 1000 * 1.2 * 0.01, 1e-12);
   EXPECT_NEAR(scene.drag->force({1, 0, 0}).x(), 0.5 * 1000 * 0.02 * std::numbers::pi * 0.01, 1e-12);
   EXPECT_EQ(scene.distributed_loads.size(), 1U);  // and bears it

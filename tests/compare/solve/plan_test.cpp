@@ -54,7 +54,8 @@ std::vector<PlannedScene> planned_scenes() {
 
 class PlanOf : public testing::TestWithParam<PlannedScene> {};
 
-/// The chain's elastic polygon from the first start, also of a single clamp, whose chain is rigid.
+/// Returns the equilibrium of the polygon with elastic segments from its first start, also for a
+/// single clamp, with which solve_chain() uses rigid segments.
 Shape elastic_chain(const Scene& scene, const ForceModelSettings& settings) {
   const Discretisation discretisation = discretise(scene, settings);
   const energy_model::PolygonResult result = energy_model::solve_polygon(
@@ -74,7 +75,8 @@ double chain_error(const Scene& scene) {
 double apart(const Shape& a, const Shape& b) { return rms(a.arc_length, a.points - b.points); }
 
 TEST_P(PlanOf, BoundsWhatStretchDoesToThePolygon) {
-  // Thin and soft in tension, so that stretch shows; EI and Gamma as they were.
+  // A larger diameter with a smaller modulus and density increases the effect of stretch at the
+  // same EI and Gamma.
   for (const double softer : {1.0, 30.0}) {
     Scene scene = GetParam().scene;
     scene.diameter *= softer;
@@ -103,7 +105,7 @@ TEST_P(PlanOf, BoundsWhatThePolygonNeglects) {
       const double measured = chain_error(scene);
       const double bound = make_plan(scene).bound("polygon");
       EXPECT_GE(bound, measured) << points << " " << to_string(bookkeeping);
-      // Infinite once the first-order answer is above 3 % of the length.
+      // The bound is infinite if the first-order response exceeds 3 % of the length.
       if (std::isfinite(bound) && measured > 1e-9) {
         EXPECT_LE(bound, 10 * measured) << points << " " << to_string(bookkeeping);
       }
@@ -141,7 +143,8 @@ TEST(Plan, NoShapeReachesAnObstacleThatIsOutOfReach) {
       const double angle = degrees * std::numbers::pi / 180;
       const Vector3d normal(std::cos(angle), std::sin(angle), 0);
       scene.obstacles = {{obstacle::Body::half_space(Vector3d::Zero(), normal)}};
-      // Moved to where the plan's clearance is zero: no shape gets any nearer.
+      // The half-space is moved to where its clearance in the plan is zero; no shape comes nearer
+      // to it.
       const double clearance = obstacle_clearances(scene).front();
       scene.obstacles.front().body = obstacle::Body::half_space(clearance * normal, normal);
       EXPECT_NEAR(obstacle_clearances(scene).front(), 0, 1e-12);

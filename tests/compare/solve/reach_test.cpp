@@ -26,7 +26,8 @@ Scene between_pins() {
   return scene;
 }
 
-// Whoever solves a scene solves it as if they were not there, to the last digit and evaluation.
+// With obstacles out of reach every model returns the same numbers after the same number of
+// evaluations as without them.
 TEST(Reach, EveryModelLeavesFarObstaclesOut) {
   for (Scene scene : {heavy_scene(8, 0), between_pins()}) {
     scene.force_model.points = 12;
@@ -45,7 +46,7 @@ TEST(Reach, EveryModelLeavesFarObstaclesOut) {
   }
 }
 
-// One that can be touched keeps its place among those that cannot.
+// Results of an obstacle in reach have its index among all obstacles of the scene.
 TEST(Reach, ForcesAreInTheScenesOrder) {
   Scene scene = heavy_scene(30, 0);
   scene.obstacles = {{obstacle::Body::half_space({0, -100, 0}, Eigen::Vector3d::UnitY())},
@@ -70,7 +71,7 @@ TEST(Reach, TheSettingsStretchCounts) {
   EXPECT_EQ(discretise(scene, soft).rod.walls.size(), 1U);
 }
 
-// The floor is so near that a rod of another modulus would stretch to it.
+// The third obstacle is a floor so near that a softer rod would reach it by stretching.
 TEST(Reach, CheckAndCalibrateLeaveThemOutForEveryModulus) {
   const Scene scene = heavy_scene(8, 0);
   Scene among = among_far_obstacles(scene);

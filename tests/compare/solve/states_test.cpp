@@ -13,7 +13,8 @@ namespace {
 using energy_model::Equilibrium;
 using energy_model::Samples;
 
-/// A rod of two stiffnesses, bent in the plane by the larger: it gives way to either side.
+/// A rod with two bending stiffnesses whose weight bends it about the stiffer axis: it buckles
+/// laterally to either side.
 Scene ribbon() {
   Scene scene = heavy_scene(30, 0);
   scene.given_mass_per_length = scene.mass_per_length();
@@ -37,7 +38,7 @@ TEST(States, MirrorImagesBendAndTwistAboutTheirOwnAxes) {
     const Samples samples = state.sample(s);
     if (samples.points.row(2).cwiseAbs().maxCoeff() > 0.01) ++beside;
     ASSERT_EQ(samples.d1.cols(), samples.points.cols());
-    // All are held alike.
+    // All equilibria have the d1 that the clamp prescribes.
     EXPECT_LT((samples.d1.col(0) - scene.first_frame().col(0)).norm(), 1e-9);
     // Trapezoidal sums of the stored energy, and of 1/2 GJ u3^2 with u3 = d1' . d2 at the middles.
     double bending = 0;

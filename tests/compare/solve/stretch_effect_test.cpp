@@ -69,7 +69,8 @@ Scene held_rubber(const Vector3d& direction) {
   return scene;
 }
 
-// It hangs straight under its weight: u(s) = w (l s - s^2 / 2) / EA, tension w (l - s) as before.
+// A rod that hangs straight under its weight: its displacement is u(s) = w (l s - s^2 / 2) / EA,
+// and stretch does not change its tension w (l - s).
 TEST(StretchEffect, OfARodThatHangsIsThatOfHookesLaw) {
   const Scene scene = held_rubber(-Vector3d::UnitZ());
   const double strain = scene.weight_per_length().norm() * scene.length / scene.axial_stiffness();
@@ -77,7 +78,8 @@ TEST(StretchEffect, OfARodThatHangsIsThatOfHookesLaw) {
   EXPECT_TRUE(neglects(solution, "stretch"));
   EXPECT_NEAR(solution.stretch.strain, strain, 1e-9 * strain);
   const double moved = strain * scene.length * std::sqrt(2.0 / 15);
-  // The clamp's segment of the polygon that answers, one of 96, does not stretch.
+  // The segment at the clamp, one of 96 of the polygon that estimates the response, does not
+  // stretch.
   EXPECT_NEAR(solution.stretch.moved_m, moved, 2.0 / 96 * moved);
   EXPECT_NEAR(solution.stretch.tension, 0, 1e-9);
 }
@@ -143,7 +145,8 @@ Solution with(Scene scene, Stretch stretch, Model model) {
 TEST(AutomaticStretch, IsThatOfAMooringLineWhichItMoves) {
   const Scene scene = line(4e5, 98, 200);
   const Solution decided = with(scene, Stretch::automatic, Model::exact);
-  // The estimate that decided it is that of the shape without.
+  // The displacement by which the decision was made is that estimated from the shape without
+  // stretch.
   EXPECT_EQ(decided.stretch.moved_m, with(scene, Stretch::none, Model::exact).stretch.moved_m);
   EXPECT_GT(decided.stretch.moved_m, 1e-3 * scene.length);
   const Solution counted = with(scene, Stretch::counted, Model::exact);
@@ -152,8 +155,8 @@ TEST(AutomaticStretch, IsThatOfAMooringLineWhichItMoves) {
   EXPECT_THROW((void)with(scene, Stretch::counted, Model::energy), InputError);
 }
 
-// Without stretch the weight of a line of its pins' distance would pull it infinitely hard, and a
-// shorter one does not reach. EI carries less than a thousandth of the force.
+// Without stretch the tension of a line as long as the distance of its pins would be infinite, and
+// a shorter line has no shape. Bending carries less than a thousandth of the force.
 TEST(AutomaticStretch, TensionIsThatOfTheElasticCatenary) {
   for (const double apart : {98.0, 100.0, 100.5}) {
     const Scene scene = line(4e5, apart, apart < 100 ? 200 : 5e3);
@@ -236,7 +239,7 @@ TEST(StretchReference, OfCompareStretchesAsTheForceModelDoes) {
               0.1 * rigid.budget.discretisation.rms_m);
 }
 
-// By its stretch it may reach one that it would not reach without.
+// The rod may reach an obstacle only because it stretches.
 TEST(StretchReference, IsRefusedWhereAnObstacleIsInReach) {
   Scene scene = held_rubber(-Vector3d::UnitZ());
   scene.stretch = Stretch::counted;

@@ -36,7 +36,7 @@ Scene spatial_scene(double roll) {
 TEST(TwistedRod, ForceModelApproachesTheRodInSecondOrder) {
   for (const double roll : {pi, -4.0}) {
     Scene scene = spatial_scene(roll);
-    // So stiff that stretch is no part of the error.
+    // With this c_c the stretch of segments is negligible.
     scene.force_model.c_c = 10 * scene.axial_stiffness();
     const energy_model::Equilibrium rod = solve_reference(scene, Model::energy);
     ASSERT_EQ(rod.twists.size(), 1);

@@ -155,7 +155,7 @@ TEST(HardCases, AnotherEquilibriumPassesAndSaysSo) {
 }
 
 TEST(Stability, ThePapersStepperBlowsUpBetweenUnequalSegments) {
-  // Its c_F knows the mean length only.
+  // The default c_F of these steps depends on the mean length of the segments only.
   StabilityOptions options;
   options.name_contains = "unequal segments";
   options.steppers = {Stepper::basic};

@@ -56,7 +56,7 @@ TEST_F(SuiteCommand, FindsNoCauseInWhatIsRight) {
     const json card = card_of(wrong(defect) + few);
     EXPECT_EQ(causes(card), Names()) << card.dump(1);
     EXPECT_EQ(card.at("total").at("right"), 4) << defect;
-    // A floor it does not have.
+    // The only unsupported scene has a floor, which this simulator does not model.
     EXPECT_EQ(card.at("total").at("not_supported"), 1) << defect;
     EXPECT_GT(card.at("total").at("smallest_order"), 1.7) << defect;
   }
@@ -92,7 +92,8 @@ TEST_F(SuiteCommand, HasOurPolygonsWithThePapersLawToo) {
       EXPECT_GT(error(0, run).get<double>(), 5 * error(1, run).get<double>()) << model;
     }
   }
-  // M = 2 c_b L sin^3(angle / 2): the cause is its power, with one clamp and with two.
+  // The paper's law M = 2 c_b L sin^3(angle / 2): the cause is the power of the angle, with one
+  // clamp and with two.
   const json cubic = card_of("--points 8 --with chain_paper --scenes weight_1,clamps_step");
   EXPECT_EQ(causes(cubic), Names{"springs with a power of the angle"}) << cubic.dump(1);
   for (const json& scene : cubic.at("scenes")) {
@@ -218,7 +219,7 @@ TEST_F(SuiteCommand, ReplacesNoFileOfAnother) {
 TEST_F(SuiteCommand, ABaselineWithNothingToCompareIsAnError) {
   const std::string gate = " --baseline " + path("errors.toml");
   succeeds("suite --with chain --scenes weight_1" + gate + " --update");
-  // Its scenes are not supported.
+  // The force model does not support any scene of the class `motion`.
   expect_output("suite --with force --scenes motion" + gate, 2,
                 {"nothing to compare with the baseline"});
 }

@@ -65,13 +65,13 @@ struct Third {
   double error = 0;  // what its last extrapolation has changed, largest [m]
 };
 
-/// Neville's scheme in h^2, at h = 0.
+/// Extrapolates three chains by Neville's scheme in h^2 to h = 0.
 Third third_method(Scene scene, const std::vector<double>& at) {
   std::array<Eigen::Matrix3Xd, 3> shapes;
   std::array<double, 3> squares{};
   int points = 40;
-  // Springs for segments, a thousand times as stiff as usual: what they stretch is in no other
-  // error.
+  // c_c is a thousand times the usual value, because the stretch of segments is not part of the
+  // answers.
   scene.force_model.c_c = 1e9 * scene.bending_stiffness() / (scene.length * scene.length);
   for (std::size_t i = 0; i < shapes.size(); ++i, points *= 2) {
     scene.force_model.points = points;
@@ -89,7 +89,7 @@ Third third_method(Scene scene, const std::vector<double>& at) {
   return third;
 }
 
-/// A scene, and the largest error that the third method may find of itself, over the length.
+/// A scene, and the largest allowed error estimate of the third method, divided by the length.
 struct Row {
   const char* id;
   double own_error;

@@ -28,7 +28,8 @@ Eigen::Vector3d position_at(double time) {
   return {radius * std::cos(rate * time), radius * std::sin(rate * time), 0.1 * time};
 }
 
-/// Adds a marker that is seen every `step` from `begin` to 2 s; `at` is where the gripper holds.
+/// Adds a marker that is observed every `step` from `begin` to 2 s; `at` is the arc length at which
+/// the gripper holds the rod.
 void add_marker(MarkerMotion& motion, double s, double at, double begin, double step) {
   for (double time = begin; time <= 2; time += step) {
     motion.positions.push_back({time, s, position_at(time) + (s - at) * direction_at(time)});
@@ -65,7 +66,7 @@ TEST(MarkerPoses, OfRatesThatDifferAreAtTheTimesOfTheFasterMarker) {
   const double error =
       std::pow(step * rate, 3) * reach / 6 * 8 / 27 + std::pow(step * rate, 4) * reach / 384;
   for (const Pose& pose : poses) {
-    // Its first and last row are at rest.
+    // A trajectory begins and ends at rest, so its ends are excluded.
     if (pose.time < 0.1 || pose.time > 1.9) continue;
     EXPECT_LT((*pose.direction - direction_at(pose.time)).norm(), 2 * error / ahead);
     EXPECT_LT((pose.position - position_at(pose.time)).norm(), 2 * error);

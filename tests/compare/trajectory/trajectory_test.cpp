@@ -42,7 +42,8 @@ TEST(Trajectory, MeetsItsPosesAndStandsBeforeAndAfterThem) {
   EXPECT_EQ(way.pose_at(7).direction, way.poses().back().direction);
 }
 
-// From both sides of a pose, by differences whose error is of first order in the step.
+// Velocities before and after a pose are compared, by differences whose error is of first order in
+// the step.
 TEST(Trajectory, HasContinuousRatesOfPositionAndDirection) {
   const Trajectory way(three_corners());
   constexpr double step = 1e-6;
@@ -52,7 +53,7 @@ TEST(Trajectory, HasContinuousRatesOfPositionAndDirection) {
   }
   EXPECT_GT(velocity(way, 1, step).norm(), 0.2);
   EXPECT_GT(turning(way, 1, step).norm(), 0.2);
-  // Here two great circles meet at an angle.
+  // At time 1.5 two great circles meet at an angle, where the angular velocity is zero.
   EXPECT_LT(turning(way, 1.5, step).norm(), 1e-5);
 }
 

@@ -21,8 +21,8 @@ using dlo::test::says;
 
 using dlo::test::one_degree;
 
-/// Shapes of a rod whose second clamp stands elsewhere in each, in the coordinates of a camera, and
-/// their scenes, which say another EI.
+/// Shapes of a rod in the coordinates of a camera, each with the second clamp at another position,
+/// and their scenes, whose nominal EI is wrong.
 struct Pictures {
   std::vector<Scene> scenes;
   std::vector<MeasuredShape> shapes;

@@ -68,7 +68,7 @@ TEST(RollFit, TheRollOfATwistedWireIsFoundWithinFiveDegrees) {
     const Scene said = twisted_wire(last, direction, made + 30 * per_degree * anywhere(random));
     const MaterialFit found = fit_material({said}, {seen_points(truth, 31, 0.5e-3, random)},
                                            {.roll_tolerance = 30 * per_degree});
-    // The first clamp is where the twist counts from.
+    // The roll of the first clamp is not fitted: twist is counted from it.
     ASSERT_EQ(found.others.size(), 1U);
     EXPECT_NEAR(said.grippers[1].frame->roll + fitted_roll(found, "roll of gripper 2", 0), made,
                 5 * per_degree);

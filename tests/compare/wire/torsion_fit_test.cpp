@@ -52,8 +52,9 @@ TEST(TorsionFit, PerfectShapesGiveBackBothStiffnesses) {
   EXPECT_NEAR(*found.torsional_stiffness->value / *truth.torsional_stiffness, 1, 1e-5);
 }
 
-// An interval of 95 % that is right holds the truth in fewer than 34 of 40 draws less than once in
-// a hundred tests. In one draw of twenty three shapes scatter by chance, which may leave it open.
+// With a correct interval of 95 %, fewer than 34 of 40 intervals contain the truth in less than one
+// of a hundred tests. In one of twenty draws the three shapes scatter by chance, which may make the
+// interval unbounded.
 TEST(TorsionFit, TheIntervalHoldsTheTruth) {
   std::mt19937 random(2);
   constexpr int draws = test::sanitized ? 2 : 40;
@@ -72,8 +73,8 @@ TEST(TorsionFit, TheIntervalHoldsTheTruth) {
   EXPECT_GE(held, draws * 34 / 40);
 }
 
-// Frames that the clamps hold as the rod has them anyway: no torque, so GJ has no effect; of exact
-// points, rounding does not determine it.
+// The clamps prescribe the frames that the rod has without twist. There is no torque, so GJ has no
+// effect. With exact points, rounding must not determine GJ.
 TEST(TorsionFit, OfAWireThatIsNotTwistedIsNotIdentifiable) {
   std::mt19937 random(3);
   for (const double noise : {1e-3, 0.0}) {

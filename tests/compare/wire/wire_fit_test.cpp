@@ -112,9 +112,9 @@ TEST(WireFit, StiffnessBesideCurvatureAndClampAnglesIsWithinFivePercentAndItsInt
   EXPECT_LE(held, 99);
 }
 
-// The direction that all shapes share moves the points as all of their own directions together do,
-// so only the span of these columns is known: rounding must not decide how many of them count. The
-// numbers are printed with four digits.
+// The column of the shared clamp direction equals the sum of the columns of the separate
+// directions, so that the columns are dependent. Rounding must not decide how many of them count.
+// The numbers are printed with four digits.
 TEST(WireFit, RoundingOfThePointsChangesNoPrintedDigit) {
   std::mt19937 random(49);
   std::vector<Picture> pictures = five_pictures(5 * deg, 0.003, random);
@@ -337,7 +337,7 @@ TEST(WireFit, ShapesThatScatterSayItAndWidenTheInterval) {
   }
 }
 
-// A chance of one in twenty, and no more.
+// Shapes of one stiffness are reported as scattered with a probability of at most one in twenty.
 TEST(WireFit, ShapesOfOneStiffnessSeldomScatter) {
   std::mt19937 random(9);
   constexpr int draws = test::sanitized ? 4 : 100;
@@ -446,7 +446,8 @@ TEST(WireFit, RefusesNaturalCurvatureThatNoClampHolds) {
       InputError);
 }
 
-// By hand: two estimates 2 apart with variances 0.01 are 1.99 apart beyond it, half of its square.
+// Two estimates that differ by 2, each with variance 0.01: the variance between shapes is half of
+// 2^2, minus 0.01.
 TEST(BetweenShapes, TwoEstimatesAreAsFarApartAsTheirScatter) {
   const auto found = scatter_between({{-1, 0.01}, {1, 0.01}}, 2);
   ASSERT_TRUE(found);

@@ -44,7 +44,7 @@ int main() {
   Eigen::Matrix3Xd forces(3, points);
   std::array<GripReaction, 1> reaction;
   for (int millisecond = 1; millisecond <= 2000; ++millisecond) {
-    // Up by 10 cm within a second.
+    // The gripper rises by 10 cm within a second.
     const double time = std::min(1e-3 * millisecond, 1.0);
     targets.row(1).setConstant(0.05 * (1 - std::cos(std::numbers::pi * time)));
     simulation.move_grip(0, targets, {0, targets(1, 0), 0});
