@@ -1,6 +1,6 @@
 #pragma once
 
-// GCC has a macro for it, Clang a feature.
+// GCC defines a macro for a sanitizer build, Clang a feature.
 #if defined(__SANITIZE_ADDRESS__)
 #define DLO_SANITIZED
 #elif defined(__has_feature)
@@ -13,15 +13,16 @@
 
 namespace dlo::test {
 
-/// Whether this is a sanitizer build. What is counted there is paths, not draws: statistics are
-/// proven by the release build, which runs the same tests in full.
+/// Whether this is a sanitizer build. Such a build checks code paths with fewer draws; the release
+/// build runs the same tests with all draws, which the statistics need.
 #if defined(DLO_SANITIZED)
 inline constexpr bool sanitized = true;
 #else
 inline constexpr bool sanitized = false;
 #endif
 
-/// How many of `all` draws are made, and a count that grows with them.
+/// Returns the number of draws, or a count proportional to it: `all`, or a quarter in a sanitizer
+/// build.
 constexpr int draws(int all) { return sanitized ? all / 4 : all; }
 
 }  // namespace dlo::test

@@ -28,7 +28,7 @@ std::vector<const DenseKernel*> available_kernels() {
     try {
       available.push_back(&dense_kernel_named(name));
     } catch (const std::invalid_argument&) {
-      // Not one of them.
+      // This machine does not have the instruction set.
     }
   }
   return available;
@@ -42,7 +42,7 @@ TEST(DenseKernel, UnknownNameIsRefusedWithTheAvailableOnes) {
                                "this machine has (baseline"));
 }
 
-// CMakeLists.txt runs it with each name.
+// CMakeLists.txt runs this test with the name of each instruction set in the environment variable.
 TEST(DenseKernel, IsThatOfTheEnvironmentVariableElseTheFastest) {
   const char* name = std::getenv("DLO_INSTRUCTION_SET");
   EXPECT_EQ(&dense_kernel(),

@@ -31,7 +31,8 @@ MovingRod moving_cantilever(double gamma) {
   return rod;
 }
 
-/// Two clamps or pins that do not hold the rod straight.
+/// Returns a rod between two clamps, or two pins, that are nearer to each other than the rod is
+/// long.
 MovingRod closed_rod(double gamma) {
   MovingRod rod;
   rod.problem = test::two_clamps(gamma, 0.8);
@@ -50,7 +51,7 @@ Dynamics run(const MovingRod& rod, const StartingShape& start, const std::vector
   return result;
 }
 
-/// [rad] or [l], of time: size sin(omega t)
+/// Returns a motion of time, size sin(omega t), in rad or l.
 std::function<MotionValue(double)> swinging(double size, double omega) {
   return [=](double time) {
     return MotionValue{size * std::sin(omega * time), size * omega * std::cos(omega * time),
@@ -103,7 +104,7 @@ TEST(Dynamics, GoesOnFromTheShapeAndTheVelocitiesOfAMotion) {
     const Eigen::Matrix3Xd end = whole.frames.back().sample(s).points;
     const Dynamics rest_of_it = run(later, whole.frames[1].sample, {1}, options);
     EXPECT_LT((rest_of_it.frames.back().sample(s).points - end).norm(), 1e-5) << is_closed;
-    // The velocities count.
+    // Without the initial velocities the motion is different.
     const Dynamics at_rest = run(later, whole.frames[1].sample, {1});
     EXPECT_GT((at_rest.frames.back().sample(s).points - end).norm(), 1e-3) << is_closed;
   }
@@ -191,7 +192,7 @@ TEST(Dynamics, GripsDoTheWorkThatTheEnergyTakes) {
   rod.inertia.point_masses = {{0.6, 0.3}};
   rod.problem.loads = {{1, {0, -1, 0}}};
   for (const bool spatial : {false, true}) {
-    // In space it would resist as a bent shaft that is turned about itself.
+    // In space material damping would also resist a bent shaft that rotates about itself.
     rod.material_damping = spatial ? 0 : 0.01;
     rod.motions = {moving(Vector3d::Zero(), Vector3d(1, 1, spatial ? 1 : 0), swinging(0.1, 5),
                           spatial ? Vector3d(1, 2, 2) : Vector3d(0, 0, 1), swinging(0.4, 4))};

@@ -122,7 +122,8 @@ TEST(Energy, NextToBucklingTheErrorStatedCoversTheTrueOne) {
       const Eigen::Matrix2Xd expected = shoot_from_tip(gamma, high).points;
       Problem problem = heavy_cantilever(gamma, 90);
       problem.grips[0].direction = Eigen::Vector3d(std::sin(tilt), std::cos(tilt), 0);
-      // A section like the rest of the rod makes it no plain cantilever: another way, the same rod.
+      // A section equal to the rest of the rod does not change it, but the solver no longer uses
+      // the method for plain cantilevers.
       for (const bool plain : {true, false}) {
         if (!plain) problem.sections = {{0.4, 0.7, 1, 0, problem.weight_per_length}};
         const Equilibrium found = solve_energy(problem);
@@ -138,9 +139,9 @@ TEST(Energy, NextToBucklingTheErrorStatedCoversTheTrueOne) {
   EXPECT_LT(solve_energy(heavy_cantilever(1, 0)).error_estimate, 1e-10);
 }
 
-// Heavy rods between grips, up to where the catenary is taken for them (line_stiffness), slack to
-// taut, with as many terms as are chosen and with numbers of terms that do not suffice. Of twice
-// the terms the error is a small part.
+// Heavy rods between grips, slack to taut, up to the stiffness below which catenaries are used
+// (line_stiffness). The number of terms is chosen automatically, or is insufficient. The reference
+// has twice the number of terms, whose error is small in comparison.
 TEST(Energy, TheErrorStatedIsTheTrueOneWithinAFactorOfAThousand) {
   constexpr double rounding = 1e-12;
   const std::vector<double> s = equal_arc_lengths(1, 201);

@@ -39,7 +39,7 @@ struct Confirmed {
   /// Shape to 1e-8 of the length, forces and torques to 1e-7 of the largest or of the weight,
   /// energy to 1e-8 of it.
   void confirm(const Problem& problem, const Equilibrium* start = nullptr) {
-    // A search may find no end; from a start there is one.
+    // A search has a time limit, because it may not end; a solve from an initial guess always ends.
     constexpr double endless = std::numeric_limits<double>::infinity();
     const double limit = start != nullptr ? endless : 20;
     const Equilibrium energy = solve_energy(problem, {.time_limit = limit, .start = start});

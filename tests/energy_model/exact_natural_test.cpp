@@ -58,8 +58,8 @@ double quadrature(double a, double b, Function f) {
 }
 
 TEST(ExactNatural, ATipLoadInThePlaneIsAQuadrature) {
-  // (EI kappa0 + m)^2 / 2 + F.t is the same all along and m is zero at the tip: ds = dtheta /
-  // kappa.
+  // The first integral (EI kappa0 + m)^2 / 2 + F.t is constant along the rod and m is zero at the
+  // tip. It gives the curvature by the angle, and ds = dtheta / kappa the arc length.
   constexpr double natural = 3;
   const Eigen::Vector2d force(-0.7, -1.2);
   const auto pull = [&](double angle) {
@@ -92,7 +92,7 @@ TEST(ExactNatural, ATipLoadInThePlaneIsAQuadrature) {
   EXPECT_NEAR(result.energy.bending, bending, 1e-11);
 }
 
-/// The equilibrium of a hanging rod in its plane next to another one.
+/// Returns the equilibrium of a hanging rod in its plane that is found from a similar one.
 Equilibrium planar_shape(double curvature, double gamma, const Equilibrium& near) {
   Equilibrium shape = solve_exact(hanging_rod(curvature, gamma), {.start = &near});
   EXPECT_TRUE(shape.sample) << shape.message;
@@ -100,7 +100,7 @@ Equilibrium planar_shape(double curvature, double gamma, const Equilibrium& near
   return shape;
 }
 
-/// Gamma at which the smallest eigenvalue of the planar shape is zero, between two.
+/// Returns the Gamma between a and b at which the smallest eigenvalue of the planar shape is zero.
 double critical_gamma(double curvature, double a, double b, Equilibrium shape) {
   const auto at = [&](double gamma) {
     shape = planar_shape(curvature, gamma, shape);
@@ -116,7 +116,8 @@ double critical_gamma(double curvature, double a, double b, Equilibrium shape) {
   return b;
 }
 
-/// The weights at which the hanging rod leaves its plane and returns to it.
+/// Compares the weights at which the hanging rod leaves its plane and returns to it with
+/// references.
 void expect_critical_weights(double curvature, double leaves, double returns) {
   Equilibrium light = solve_exact(hanging_rod(curvature, 0));
   for (double gamma = 4; gamma < leaves; gamma += 4) light = planar_shape(curvature, gamma, light);
@@ -126,7 +127,8 @@ void expect_critical_weights(double curvature, double leaves, double returns) {
   EXPECT_NEAR(critical_gamma(curvature, above, 1.03 * returns, heavy), returns, 1e-6);
 }
 
-// 8/l and 10/l leave the plane and return to it on different branches.
+// Rods with natural curvature 10/l and 8/l leave their plane, and return to it, at different
+// weights.
 TEST(ExactNatural, AHangingRodOf10LeavesItsPlaneAndReturns) {
   expect_critical_weights(10, 28.769705, 238.935595);
 }
@@ -154,7 +156,7 @@ TEST(ExactNatural, BetweenTheTwoWeightsTheLowestShapeIsOutOfThePlane) {
   const std::vector<double> s = equal_arc_lengths(1, 21);
   const double out = all[0].sample(s).points.row(2).cwiseAbs().maxCoeff();
   EXPECT_GT(out, 0.01);
-  // Its mirror image is one too.
+  // The second equilibrium is the mirror image of the first.
   Samples mirrored = all[0].sample(s);
   mirrored.points.row(2) *= -1;
   EXPECT_LT((all[1].sample(s).points - mirrored.points).cwiseAbs().maxCoeff(), 1e-10);
@@ -225,7 +227,8 @@ TEST(ExactNatural, ReactionsAreTheDerivativesOfTheEnergy) {
   problem.sections = {{0.5, 0.8, 2, 1.2, {0, -4, 0}}};
   problem.grips.push_back({1, {0.4, 0.1, 0.5}, Eigen::Vector3d(1, 0.2, 0.3), FrameHold{}});
   constexpr double h = 1e-4;
-  // The end's frame where it is now, so that it stays when the clamp moves.
+  // The frame of the end is prescribed as it is at present, so that it does not rotate when the
+  // clamp moves.
   const Eigen::Vector3d direction = problem.grips[1].direction->normalized();
   problem.grips[1].frame = FrameHold{direction.unitOrthogonal(), 0};
   const Equilibrium held = test::converged(solve_exact(problem));

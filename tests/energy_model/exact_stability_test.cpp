@@ -21,10 +21,15 @@ bool says(const Equilibrium& equilibrium, const std::string& words) {
 }
 
 TEST(SecondVariation, OfAnUnloadedRodIsThatOfTheLinearTheory) {
-  // Modes sin((k + 1/2) pi s): Q / int (|eta'|^2 + |eta|^2) = q / (q + 1) with q = (pi / 2)^2.
+  // The modes are sin((k + 1/2) pi s). The smallest quotient Q / int (
+  // eta'
+  // ^2 +
+  // eta
+  // ^2) is q / (q + 1) with q = (pi / 2)^2.
   const double q = pi * pi / 4;
   EXPECT_NEAR(solve_exact(heavy_cantilever(0, 0)).smallest_eigenvalue, q / (q + 1), 1e-7);
-  // Clamped on both sides of the same rod the shorter span is the stiffer one.
+  // A clamp inside the rod leaves two cantilevers, of which the longer one has the smaller
+  // eigenvalue.
   Problem middle = heavy_cantilever(0, 0);
   middle.grips[0].at = 0.25;
   const double longer = pi * pi / 4 / (0.75 * 0.75);
@@ -35,7 +40,7 @@ TEST(SecondVariation, ChangesItsSignWhereAnUprightRodBuckles) {
   const double critical = test::self_buckling_gamma;
   for (const double off : {-1e-4, 1e-4}) {
     const std::vector<Equilibrium> found = all_exact(heavy_cantilever(critical * (1 + off), 90));
-    // Straight is the only one below, and unstable above.
+    // Below the buckling load the straight shape is the only equilibrium; above it is unstable.
     const auto straight =
         std::find_if(found.begin(), found.end(), [](const Equilibrium& equilibrium) {
           return std::abs(test::point_at(equilibrium, 1).x()) < 1e-6;
@@ -103,7 +108,8 @@ TEST(Exact, FindsPairsOfRootsWithinACellOfItsScan) {
 }
 
 TEST(Exact, ReturnsTheStableShapeOfTwoPinsNearEachOther) {
-  // It returned an unstable one of 65.4 EI/l: between the pins the polygon had one interval.
+  // The exact solver once returned an unstable equilibrium of 65.4 EI/l, because the polygon had a
+  // single interval between the pins.
   Problem problem = heavy_cantilever(2.0506, 0);
   problem.grips = {{0.506, {0, 0, 0}, std::nullopt},
                    {0.567, {-0.0539556788779, -0.0106264590638, 0}, std::nullopt}};
@@ -149,8 +155,8 @@ TEST(Exact, ListsWhatItHasFoundWhenItsTimeIsOver) {
   const std::vector<Equilibrium> whole = all_exact(arch);
   ASSERT_FALSE(whole.empty());
   int cut_short = 0;
-  // The polygons that it shoots from take a share of the time, so that some limit ends them and
-  // leaves enough to shoot from the first.
+  // The polygons that give the initial guesses take part of the time. Some of these limits end the
+  // search after at least one shooting.
   for (double limit = 1; limit > 1e-4; limit /= 1.2) {
     for (const Equilibrium& found : all_exact(arch, {.time_limit = limit})) {
       if (found.status != SolveStatus::time_limit) continue;
@@ -172,7 +178,8 @@ TEST(Exact, RefusesLoadsBeyondDoublePrecisionAndBadOptions) {
 }
 
 TEST(LoadBesideAClamp, CountsOnce) {
-  // Nearer than 1e-9 l it is the clamp's, on either side of it and at either end.
+  // A load nearer than 1e-9 l to a clamp acts on the clamp, on either side of it and at either end
+  // of the rod.
   for (const auto& [clamp, load] : {std::pair(5e-10, 0.0),
                                     {0, 5e-10},
                                     {0, 0},
@@ -188,7 +195,7 @@ TEST(LoadBesideAClamp, CountsOnce) {
     for (const Equilibrium& result : {solve_energy(problem), solve_exact(problem)}) {
       ASSERT_TRUE(succeeded(result.status)) << result.message;
       EXPECT_NEAR(result.grips[0].force.y(), -101, 1e-9);
-      // The work of the load at the other end; that at the clamp does none.
+      // Only the load at the other end does work; the load at the clamp does none.
       const double way = test::point_at(result, other).y() - problem.grips[0].position.y();
       EXPECT_NEAR(result.energy.load, -way, 1e-6);
     }

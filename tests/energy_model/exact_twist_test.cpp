@@ -83,7 +83,8 @@ TEST(TwistedSecondVariation, VanishesWhereAStraightRodBuckles) {
   EXPECT_NEAR(extrapolated_root(critical, 0.01, smallest), critical, 1e-8);
 }
 
-/// A circle in the plane, its twist turned by an angle: the torque needs a force out of the plane.
+/// Returns the state of a planar ring that is twisted by an angle. The torque requires a force
+/// perpendicular to the plane.
 RodState ring_state(double c, double angle, double s) {
   const double k = 2 * pi;
   const Eigen::Vector3d t(std::cos(k * s), std::sin(k * s), 0);
@@ -96,8 +97,8 @@ RodState ring_state(double c, double angle, double s) {
 }
 
 TEST(TwistedSecondVariation, VanishesWhereMichellsRingBuckles) {
-  // At a twist of 2 pi 3^(1/2) / c, in two ways. It turns about the clamps' line for nothing
-  // before.
+  // The ring becomes unstable at a twist of 2 pi 3^(1/2) / c, in two directions. Below that,
+  // rotation about the line of the clamps is its only zero mode.
   for (const double c : {0.6, 1.0, 1.5}) {
     const RodSpan span = span_of(rolled_clamps({0, 0, 0}, {1, 0, 0}, c, 0));
     const auto stability = [&](double angle) {
@@ -147,7 +148,7 @@ struct FramedCurve {
   }
 };
 
-/// A function on the elements of the second variation, polynomials through their nodes.
+/// Returns a mode of the second variation at s, by polynomials through the nodes of each element.
 Eigen::Vector3d on_elements(const SecondVariation& mode, double s) {
   constexpr Eigen::Index order = 4;
   Eigen::Index first = 0;
@@ -164,7 +165,7 @@ Eigen::Vector3d on_elements(const SecondVariation& mode, double s) {
 }
 
 TEST(TwistedSecondVariation, IsTheSecondDifferenceOfTheEnergy) {
-  // On frames of no special shape, with a force and a moment that do not fit them.
+  // The frames are arbitrary and not an equilibrium: force and moment do not balance.
   const auto frame = [](double s) {
     const Eigen::Vector3d turn(1.5 * std::sin(2 * s), 2 * s * s - 1, 5 * s + std::cos(3 * s));
     return from_rotation_vector(turn).toRotationMatrix();
@@ -252,7 +253,8 @@ TEST(ExactTwist, PutsTheFrameAtTheEndWhereTheRollSays) {
 }
 
 TEST(ExactTwist, OfSeveralPartsIsInBalance) {
-  // A clamp in the middle holds a frame, another beyond does not: the last part has no twist.
+  // A clamp in the middle holds a frame and a later one does not, so the last part of the rod is
+  // not twisted.
   Problem problem = askew(2);
   problem.length = 2;
   problem.bending_stiffness = 3;
@@ -305,7 +307,8 @@ TEST(ExactTwist, ReportsTheRollThatItReached) {
   EXPECT_NE(result.message.find("of 1000000"), std::string::npos) << result.message;
 }
 
-// A flow of tangents alone ended there: with any tangents held its roll has no equilibrium nearby.
+// With a gradient flow of the tangents alone the solver did not converge, because the roll has no
+// equilibrium nearby for any fixed tangents.
 TEST(ExactTwist, FollowsAStripWhoseRollSnaps) {
   const Problem problem = test::random_problem(500003, test::RandomSpace::strip);
   const Equilibrium result = test::converged(solve_exact(problem));

@@ -79,7 +79,7 @@ Fold thrown_back_fold() {
   return fold;
 }
 
-/// The shape that comes from this tip, to start a solve from.
+/// Returns the shape that is shot from this tip angle, as an initial guess.
 Equilibrium shape_of(Real gamma, Real tip_angle) {
   constexpr int steps = 2000;
   const std::vector<State> states = shot(gamma, tip_angle, steps);
@@ -118,7 +118,8 @@ TEST(Fold, WhatIsCalledConvergedIsAsNearAsItsErrorSays) {
     const Real gamma =
         static_cast<double>(fold.gamma * (1 + std::pow(10.0L, static_cast<Real>(-exponent))));
     const Equilibrium found = solve_energy(ribbon(gamma), {.start = &start});
-    // The lighter the rod the nearer the two shapes; Newton's method comes from the far side.
+    // The nearer the weight is to the fold, the nearer the two shapes are. Newton's method starts
+    // on the side away from the other shape.
     for (int i = 0; i < 60; ++i) {
       const State here = at_clamp(gamma, angle);
       angle -= here[0] / here[2];
@@ -129,7 +130,8 @@ TEST(Fold, WhatIsCalledConvergedIsAsNearAsItsErrorSays) {
                                                           static_cast<double>(exact[5])))
                              .norm();
     EXPECT_LE(error, found.error_estimate);
-    // Its square is as what the weight is above the fold's.
+    // The square of the smallest eigenvalue is proportional to the distance of the weight from the
+    // fold.
     if (exponent >= 5 && exponent <= 9) {
       EXPECT_NEAR(found.smallest_eigenvalue / softest, std::sqrt(0.1), 0.002);
     }
@@ -139,7 +141,7 @@ TEST(Fold, WhatIsCalledConvergedIsAsNearAsItsErrorSays) {
       softest = found.smallest_eigenvalue;
     }
     if (exponent <= 13) continue;
-    // That there is a shape at all is a matter of the terms left out, half as many more too.
+    // This near to the fold, the truncated terms determine whether an equilibrium exists at all.
     EXPECT_EQ(found.status, SolveStatus::near_singular) << found.message;
     EXPECT_EQ(found.neutral_directions, 1);
     if (found.smallest_eigenvalue > 1e-7) ++open;
@@ -154,7 +156,7 @@ TEST(Fold, BelowItNothingOfTheBranchIsCalledConverged) {
   for (int exponent = 4; exponent <= 15; ++exponent) {
     const Real gamma = fold.gamma * (1 - std::pow(10.0L, -exponent));
     const Equilibrium found = solve_energy(ribbon(gamma), {.start = &start});
-    // The shape that hangs on the other side is the only equilibrium there.
+    // Beyond the fold the shape that hangs on the other side is the only equilibrium.
     const bool thrown_back = tip_of(found).x() < 0;
     EXPECT_FALSE(thrown_back && succeeded(found.status)) << exponent << ": " << found.message;
   }

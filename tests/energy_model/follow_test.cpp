@@ -56,8 +56,8 @@ TEST(Keep, AgreesWithFollowOnTheSameBranch) {
   }
 }
 
-// A vertical clamp that has rotated too far for the rod to lean to its side: the rod snaps about
-// the clamp's axis. If try_follow() does not reach a shape, it keeps the previous one.
+// A vertical clamp rotates until the rod can no longer lean to its side and snaps about the axis of
+// the clamp. If try_follow() does not find a shape, it keeps the previous one.
 TEST(Keep, StaysWhereItWasWhenTheBranchHasEnded) {
   EnergySolver solver;
   ASSERT_TRUE(succeeded(solver.solve(heavy_cantilever(10, 80)).status));
@@ -98,11 +98,12 @@ double clearance_beside(const Equilibrium& rod, const ContactPart& contact,
   return peg.clearances(rod.sample(s).points).minCoeff();
 }
 
-// Where a point begins to lie the clearance has neither slope nor curvature: the place of its least
-// value is 0 / 0. A step that ends there, or beyond, has to keep the branch however near it comes.
+// Where a point contact becomes an interval the slope and the curvature of the clearance are zero,
+// so that the position of its minimum is undefined. A step that ends there or beyond must stay on
+// the branch.
 TEST(Keep, FollowsAPointUntilItLiesAndBack) {
   constexpr double radius = 0.03;
-  // It begins to lie at about this tension.
+  // At about this tension the point contact becomes an interval.
   const double about = 1.6 / (radius * radius);
   const Equilibrium start = test::start_over_peg(radius);
   EnergySolver solver({.start = &start});

@@ -38,7 +38,8 @@ TEST(FreeDirections, SmallestEigenvalueIsProven) {
   EXPECT_NEAR(smallest_without_constraints(hessian), 0.1, 1e-4);
 }
 
-// The vectors of the iteration become short among such, and have to stay orthogonal.
+// If many eigenvalues are close, the vectors of the iteration become short and have to be kept
+// orthogonal.
 TEST(FreeDirections, SmallestOfManyCloseEigenvaluesIsNotTooLow) {
   for (const double largest : {1.003, 1.03, 1.3}) {
     const Eigen::MatrixXd hessian = with_eigenvalues(Eigen::VectorXd::LinSpaced(60, 1, largest));

@@ -1,5 +1,5 @@
-// Where the exact solver follows a twisted rod to when its shape becomes unstable
-// (shooting/gradient_flow.hpp).
+// Tests of the gradient flow (shooting/gradient_flow.hpp) by which the exact solver leaves a
+// twisted shape that has become unstable.
 
 #include <gtest/gtest.h>
 
@@ -33,8 +33,8 @@ double asymmetry(const Equilibrium& shape) {
   return (points - turned).colwise().norm().maxCoeff();
 }
 
-// The continuation is on the symmetric shape, which is an equilibrium at every roll; at 12 it has
-// become a saddle.
+// The continuation follows the symmetric shape, which is an equilibrium at every roll. At a roll of
+// 12 it is a saddle.
 TEST(GradientFlow, LeavesTheSymmetryThatHasBecomeUnstable) {
   const auto at = [](double roll) {
     return rolled({0.8, 0, 0}, Eigen::Vector3d::UnitX(), 50, 2, roll);
@@ -57,9 +57,9 @@ TEST(GradientFlow, GivesUpTwistBeyondAFold) {
   ASSERT_EQ(after.status, SolveStatus::converged) << after.message;
   EXPECT_GT(after.smallest_eigenvalue, 0);
   EXPECT_LT(test::balance_of(at(5.25), after, 0.01).worst(), 1e-10);
-  // The roll grows, the twist drops: the rod takes up the difference by winding.
+  // The roll increases and the twist decreases: the difference becomes writhe.
   EXPECT_LT(after.twists.at(0).angle, before.twists.at(0).angle - 1);
-  // Less than the torque before would have put into it.
+  // The energy grows by less than the previous torque times the change of roll.
   EXPECT_LT(after.energy.total(), before.energy.total() + 0.25 * before.twists[0].torque);
   const Equilibrium energy = test::converged(solve_energy(at(5.25), {.start = &after}));
   EXPECT_NEAR(energy.energy.total(), after.energy.total(), 1e-8);

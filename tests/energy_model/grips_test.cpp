@@ -70,7 +70,8 @@ TEST(Grips, TurnWithTheSceneInSpace) {
 }
 
 TEST(Grips, OnePinCarriesAllThatHangsOnARodInSpace) {
-  // The weight is not the largest force: no frame may be made of it unless it has length 1.
+  // The weight per length is not the largest force. It must be normalised before a frame is derived
+  // from it.
   Problem problem;
   problem.length = 1;
   problem.bending_stiffness = 1;
@@ -176,7 +177,7 @@ TEST(AllEquilibria, OfAHorizontalClampAreThoseOfTheExactScan) {
 }
 
 TEST(AllEquilibria, AreCalledConvergedOnlyIfStable) {
-  // The prototype's trap: an S of energy about 16.8 that a solver called a success
+  // An early prototype reported an S-shaped saddle with an energy of about 16.8 as converged.
   for (const double gamma : {0.0, 10.0, 60.0}) {
     for (const Problem& problem : {two_clamps(gamma, 0.8), heavy_cantilever(gamma, 50)}) {
       const std::vector<Equilibrium> found = all_energy(problem);
@@ -252,7 +253,7 @@ TEST(Clamps, LiftTheWeightOfEverySpan) {
 }
 
 TEST(Clamps, AnUnstableSpanMakesTheRodUnstable) {
-  // The rod comes down to its clamp, at last too heavy to stand on it, and hangs below.
+  // A rod stands on a clamp that points down, up to a critical weight, and hangs below it.
   Problem problem = heavy_cantilever(40, -90);
   problem.grips[0].at = 0.5;
   const Equilibrium light = test::converged(solve_exact(problem));
@@ -277,8 +278,8 @@ TEST(Pin, CarriesTheLoadThatActsOnIt) {
 }
 
 TEST(Arch, ThatIsUnstableOutOfPlaneLeavesThePlane) {
-  // An upright rod above self-buckling whose tip is pinned right above the clamp, pressed down: it
-  // buckles in any plane; a tall arch between clamps that point up and down leans over.
+  // A tall arch leaves its plane. An upright rod above self-buckling whose tip is pinned above its
+  // clamp buckles in any plane.
   Problem problem = heavy_cantilever(200, 90);
   problem.grips.push_back({1, {0.1, 0, 0}, Eigen::Vector3d(0, -1, 0)});
   const Equilibrium result = test::converged(solve_energy(problem));

@@ -109,7 +109,7 @@ TEST(LineLoad, EnergyAndShootingAgreeOnRandomScenes) {
       SCOPED_TRACE(test::name_of(space) + std::to_string(number));
       const bool planar = space == RandomSpace::plane;
       Problem problem = random_problem(number, space);
-      // Stiff enough for every one to be solved in a moment.
+      // The forces are limited so that every problem is solved quickly.
       const double share = std::min(1.0, 30 / problem.weight_per_length.norm());
       problem.weight_per_length *= share;
       for (Load& load : problem.loads) load.force *= share;

@@ -49,7 +49,7 @@ TEST(LowestCombinations, PutStableOnesFirstAndFailedOnesLast) {
 }
 
 TEST(LowestCombinations, TakeBoundedTimeForManySpans) {
-  // 6^200 combinations
+  // There are 6^200 combinations.
   const std::vector<std::vector<SpanCandidate>> candidates(
       200, {{true, 1}, {true, 2}, {true, 3}, {true, 4}, {true, 5}, {true, 6}});
   const Combinations lowest = lowest_combinations(candidates, 64);

@@ -38,7 +38,8 @@ Matrix3d along_x() {
   return frame;
 }
 
-/// @param tolerance  of what is left at the end, over EI/l and EI/l^2
+/// Compares a solution with Kirchhoff's equations, integrated from its own reactions.
+/// @param tolerance  of the remaining moment and force at the end, divided by EI/l and EI/l^2
 void expect_kirchhoff(const Problem& problem, const Equilibrium& solution, const Matrix3d& frame,
                       double tolerance) {
   const test::RodEnd end = test::carried_along(problem, solution, frame);
@@ -51,11 +52,11 @@ TEST(NaturalRod, IsItsOwnShapeWithoutForces) {
   Problem problem = clamped_rod();
   problem.natural_strains = {{0, 3, 0}};
   Equilibrium circle = solved_rod(problem);
-  // To the left of x, seen from +z.
+  // A curvature about d2 bends the rod to the left of x, seen from +z.
   EXPECT_LT((point_at(circle, 1) - Vector3d(std::sin(3) / 3, (1 - std::cos(3)) / 3, 0)).norm(),
             1e-12);
   EXPECT_LT(circle.energy.total(), 1e-20);
-  // About d1 it bends to -d2.
+  // A curvature about d1 bends the rod towards -d2.
   problem.natural_strains = {{3, 0, 0}};
   circle = solved_rod(problem);
   EXPECT_LT((point_at(circle, 1) - Vector3d(std::sin(3) / 3, 0, -(1 - std::cos(3)) / 3)).norm(),
@@ -75,7 +76,8 @@ TEST(NaturalRod, IsItsOwnShapeWithoutForces) {
   EXPECT_LT((point_at(clothoid, 1) - tip).norm(), 1e-12);
 }
 
-// However far the free rod turns: whole turns are counted with it.
+// The clamp at 0.6 is at the stress-free shape, so no force acts, however many turns that shape
+// has.
 TEST(NaturalRod, IsFreeBetweenClampsWhereTheStressFreeShapeEnds) {
   for (const double k : {2.0, 6.0, -9.0, 14.0}) {
     SCOPED_TRACE(k);
@@ -202,7 +204,7 @@ TEST(Clamp, ThatLetsTheRodRotatePassesItsTorqueOn) {
   for (const double s : {0.2, 0.7}) {
     EXPECT_LT((point_at(same, s) - point_at(whole, s)).norm(), 1e-8);
   }
-  // Elsewhere it pushes, and all is in balance.
+  // A clamp at another position exerts a force, and Kirchhoff's equations still hold.
   passed.grips[1].position += Vector3d(0, 0.02, 0.01);
   const Equilibrium pushed = solved_rod(passed);
   EXPECT_GT(pushed.grips[1].force.norm(), 1);
@@ -211,7 +213,7 @@ TEST(Clamp, ThatLetsTheRodRotatePassesItsTorqueOn) {
 }
 
 TEST(NaturalRod, HasTheSameDirectorsInBothModels) {
-  // On both sides of a clamp that is rolled, whose d1 is where it says, turned on.
+  // A rolled clamp inside the rod: both models have the same d1 on both sides of it.
   Problem problem = clamped_rod();
   problem.weight_per_length = {0, -5, 2};
   problem.natural_strains = {{1, 2, 0.5}};
@@ -236,11 +238,12 @@ TEST(NaturalRod, BehindItsFirstClampIsTheSameRod) {
   whole.grips[0].at = 0.5;
   whole.grips[0].frame = FrameHold{Vector3d::UnitY(), 0.3};
   const Equilibrium both = solved_rod(whole);
-  // Seen from the clamp s runs back: t and d2 turn round, and with them the strains.
+  // The half before the clamp is counted from the clamp, so s is reversed. t and d2 change sign,
+  // and so do the strains about d1.
   Problem half = whole;
   half.length = 0.5;
   half.grips[0] = {0, Vector3d::Zero(), -Vector3d::UnitX(), FrameHold{Vector3d::UnitY(), -0.3}};
-  // P_1 on the first half, from its end: -x/2 - 1/2.
+  // With x counted from the clamp, P_1 of the whole rod is -x/2 - 1/2 on this half.
   const Vector3d back(-1, 1, 1);
   const std::vector<Vector3d>& u = whole.natural_strains;
   half.natural_strains = {back.cwiseProduct(u[0] - u[1] / 2), back.cwiseProduct(-u[1] / 2)};
@@ -273,7 +276,8 @@ TEST(SectionsOfTheirOwnShape, AreArcsWithoutForces) {
       ASSERT_EQ(result.status, SolveStatus::converged) << result.message;
       EXPECT_NEAR(result.energy.total(), 0, 1e-18);
       const Vector3d chord = point_at(result, 1) - point_at(result, 0);
-      // Held at its tip along x, its shaft is turned back by 0.4.
+      // The tip is clamped along x, which rotates the whole shape, including the shaft, by -0.4
+      // rad.
       const Vector3d expected = first + second;
       const Vector3d seen =
           from_its_tip ? Vector3d(Eigen::AngleAxisd(0.4, Vector3d::UnitZ()) * chord) : chord;
@@ -324,7 +328,7 @@ TEST(NaturalRod, SaysWhatItNeeds) {
   problem.natural_strains = {{0, 1, 0}};
   problem.weight_per_length = {0, -1, 1};
   problem.grips.push_back({1, {0.5, 0.3, 0}, Vector3d::UnitX(), {}});
-  // In no plane, and no d1.
+  // The shape lies in no plane and no d1 is given.
   EXPECT_THROW((void)solve_energy(problem), std::invalid_argument);
   problem = clamped_rod();
   problem.sections = {{0.2, 0.6, 1, 1, {}}, {0.5, 0.8, 1, 1, {}}};
@@ -336,14 +340,15 @@ TEST(NaturalRod, SaysWhatItNeeds) {
   EXPECT_THROW((void)solve_energy(problem), std::invalid_argument);
 }
 
-/// However small a load is, the rod is not bent into its plane.
+/// The plane of the natural curvature is that of the unloaded rod, however small the load out of it
+/// is.
 TEST(NaturalNormal, IsThatOfTheSceneWithoutLoads) {
   Problem problem = clamped_rod();
   problem.natural_strains = {{0, 1, 0}};
   const Vector3d free = point_at(solved_rod(problem), 1);
   problem.loads = {{.at = 1, .force = {0, 0, 1e-8}}};
   EXPECT_LT((point_at(solved_rod(problem), 1) - free).norm(), 1e-7);
-  // Along z the rod would not stay where it is without loads.
+  // A larger load along z moves the rod out of the plane that it has without loads.
   problem.loads[0].force.z() = 0.1;
   EXPECT_FALSE(natural_normal(problem));
   EXPECT_THROW((void)solve_energy(problem), std::invalid_argument);

@@ -1,5 +1,5 @@
-// Shapes next to a fold or a bifurcation say in how many directions they are open; turns of the rod
-// as a whole are none of them.
+// Tests of the number of neutral directions that is reported for shapes near a fold or a
+// bifurcation. Rigid-body modes do not count.
 
 #include <gtest/gtest.h>
 
@@ -55,14 +55,15 @@ TEST(NeutralDirections, AnUprightRoundRodHasTwoNextToBuckling) {
 }
 
 TEST(NeutralDirections, AStripHasOneWhicheverWayItIsWeak) {
-  // The weak direction is in the plane that the solver works in, or across it.
+  // The direction of the smaller stiffness is in the plane of the solver, or perpendicular to it.
   expect_open(solve_energy(strip(upright(1e-9), 4, 1, 1)), 1);
   expect_open(solve_energy(strip(upright(1e-9), 1, 4, 1)), 1);
   expect_determined(solve_energy(strip(upright(1e-6), 1, 4, 1)));
 }
 
 TEST(NeutralDirections, EulersColumnHasTwoAtItsLoadAndIsNoBetterDeterminedThere) {
-  // Smallest eigenvalue 1 - P / (pi/2)^2, so that half of the gap to `neutral` is still neutral.
+  // The smallest eigenvalue is 1 - P / (pi/2)^2. A load that is half of the threshold `neutral`
+  // below buckling still counts as neutral.
   const auto column = [](double below) {
     Problem problem = heavy_cantilever(0, 90);
     problem.grips[0].direction = Eigen::Vector3d::UnitX();
@@ -106,7 +107,8 @@ TEST(NeutralDirections, AnArchThatSnapsHasOneAtItsFold) {
 
 TEST(NeutralDirections, RigidBodyModesAreNotCounted) {
   for (const double gamma : {0.0, 1.0, 30.0}) {
-    // Between pins above each other, and between clamps along that line; twisted too.
+    // The rod hangs between pins above each other, between clamps along that line, or twisted
+    // between such clamps. It may rotate about the line.
     Problem problem = heavy_cantilever(gamma, 0);
     problem.torsional_stiffness = 0.8;
     for (const int kind : {0, 1, 2}) {
@@ -126,11 +128,11 @@ TEST(NeutralDirections, RigidBodyModesAreNotCounted) {
       EXPECT_LT(found.error_estimate, 1e-6);
     }
   }
-  // A rod of two pins that cannot turn for its weight has no zero.
+  // The weight prevents rotation about the line of the two pins, so there is no zero mode.
   Problem across = heavy_cantilever(10, 0);
   across.grips = {{0, {0, 0, 0}}, {1, {0.7, 0, 0}}};
   EXPECT_GT(solve_energy(across).smallest_eigenvalue, 1e-3);
-  // Nor is one held by a straight line of its own a turn of anything.
+  // Rotation of a straight rod about its own line does not change its shape and is no zero mode.
   expect_determined(solve_energy(heavy_cantilever(3, -90)));
 }
 
@@ -149,7 +151,7 @@ void expect_sliding_helix(double slack, const char* message) {
   EXPECT_TRUE(found.message.starts_with(message)) << found.message;
   EXPECT_EQ(found.neutral_directions, 0);
   EXPECT_NEAR(found.smallest_eigenvalue, 0, 1e-7);
-  // The ends change forces by the square of their curvature.
+  // The clamps change the forces by the square of the curvature at the ends.
   const double share = 1e-6 + 40 * std::exp(-4 * std::pow(std::sin(theta), 2) / slack);
   EXPECT_NEAR(found.twists.at(0).torque, torque, share * torque);
   EXPECT_NEAR(found.grips[1].force.x(), tension, share * tension);
@@ -157,7 +159,7 @@ void expect_sliding_helix(double slack, const char* message) {
 }
 
 TEST(NeutralDirections, AHelixThatMaySlideAlongTheRodHasAZeroMode) {
-  // It may rotate about the line of the clamps too.
+  // The second zero mode is rotation about the line between the clamps.
   expect_sliding_helix(0.025, "converged, 2 zero modes");
 }
 

@@ -86,7 +86,8 @@ TEST(Table, OverhangLiftsTheRodBehindTheEdge) {
     EXPECT_NEAR(behind, std::sqrt(2.0), 1e-3 * gamma);
     EXPECT_LT(std::abs(behind - std::sqrt(2.0)), last);
     last = std::abs(behind - std::sqrt(2.0));
-    // 3 w a^2 / 2 b carries the lever, w a and w b / 2 what hangs on it.
+    // The edge carries w a of the overhang and w b / 2 of the lifted part, and w a^2 / (2 b) of
+    // their moment.
     const double a = 1 - edge;
     const double b = edge - rod.contacts[0].end;
     EXPECT_NEAR(rod.contacts[1].force.y(), gamma * (a + b / 2 + a * a / (2 * b)), 2e-3 * gamma);
@@ -111,7 +112,8 @@ TEST(Peg, RopeHasTheTensionOfTheFrictionlessCapstan) {
   EXPECT_NEAR(before - after, gamma * (ends.points(1, 0) - ends.points(1, 1)), 1e-7 * gamma);
 }
 
-// A body thinner than the grid on which shapes are judged is seen, whatever the search has found.
+// A body thinner than the grid on which penetration is checked is detected, independently of the
+// search.
 TEST(Peg, AThinOneWithinARodIsSeenWhereverItIs) {
   Problem problem = test::framed_clamps(5, 0.7, 0.8, 1);
   const Equilibrium free = test::converged(solve_energy(problem));

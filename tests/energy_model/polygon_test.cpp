@@ -63,7 +63,7 @@ TEST_P(PolygonOfEveryLaw, GradientIsTheDifferenceOfTheEnergy) {
   std::mt19937 engine(3);
   std::uniform_real_distribution<double> uniform(-0.05, 0.05);
   for (double& x : points.reshaped()) x += uniform(engine);
-  // One joint beyond the angle at which the hooke law's moment stops growing
+  // One joint is bent beyond the angle at which the moment of the law hooke stops growing.
   points.col(6) = points.col(4) + Eigen::Vector3d(0, 0.004, 0.002);
   Eigen::Matrix3Xd gradient(3, 9);
   Eigen::Matrix3Xd unused(3, 9);
@@ -86,7 +86,8 @@ TEST_P(PolygonOfEveryLaw, RestsInFewStepsAndBalancesItsForces) {
       const PolygonProblem problem = between_clamps(GetParam(), points, 0.8, gamma);
       const PolygonResult result = solve_polygon(problem, arch(problem, 0.8, 0));
       ASSERT_TRUE(succeeded(result.status)) << gamma << ", " << points << ": " << result.message;
-      // Where only the cubic law acts the Hessian fades towards rest, and Newton is slow.
+      // With the cubic law and without weight the Hessian tends to zero at the equilibrium, so that
+      // Newton's method converges slowly.
       const bool fading = GetParam() == JointLaw::paper && gamma == 0;
       EXPECT_LT(result.evaluations, fading ? 1000 : 200) << gamma << ", " << points;
       const Eigen::Vector3d total =

@@ -65,7 +65,7 @@ struct SpatialRod {
     return s;
   }
 
-  /// The twist that the frames put into a polygon that rests without it.
+  /// Returns the twist that the clamps' frames cause in a polygon that is at rest without twist.
   [[nodiscard]] PolygonTwist twist(const Eigen::Matrix3Xd& rest) const {
     PolygonTwist result;
     result.last_segment = rest.cols() - 2;
@@ -73,7 +73,8 @@ struct SpatialRod {
     result.first_d1 = held_d1(held, held.grips[0]);
     result.last_d1 = held_d1(held, held.grips[1]);
     result.compliance = 1 / GJ;
-    // Less than half a turn from where the polygon brings the first one, and the roll.
+    // The twist is the roll plus the angle, within half a turn, from the transported first frame to
+    // the last one.
     result.angle = polygon_twist_angle(result, rest) + roll;
     result.last_d1 = Eigen::AngleAxisd(roll, last_direction) * result.last_d1;
     return result;
@@ -113,7 +114,7 @@ TEST(PolygonTwist, GradientAndHessianAreDifferences) {
   Eigen::Matrix3Xd gradient(3, points.cols());
   (void)polygon_energy(problem, points, gradient);
   constexpr double h = 1e-6;
-  // Held segments keep their directions: frames that come along with them are another question.
+  // The points of clamped segments are not varied, because their frames would rotate with them.
   for (const Eigen::Index point : {2, 3, 6}) {
     for (Eigen::Index k = 3 * point; k < 3 * point + 3; ++k) {
       Eigen::Matrix3Xd ahead = points;

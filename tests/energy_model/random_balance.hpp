@@ -114,7 +114,8 @@ inline void add_polygons(const std::string& name, const energy_model::Problem& p
     try {
       const compare::Solution solution = compare::solve(scene, model, {.time_limit = time_limit});
       const compare::Discretisation polygon = compare::discretise(scene, scene.force_model);
-      // The shape ends at the clamps' references; loads act on the polygon's own points.
+      // The shape ends at the clamps' reference points, but the loads act on the points of the
+      // polygon.
       Eigen::Matrix3Xd points = solution.shape.points;
       for (const force_model::Grip& grip : polygon.rod.grips) {
         points.middleCols(grip.first_point, grip.targets.cols()) = grip.targets;

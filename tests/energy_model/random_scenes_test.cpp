@@ -24,13 +24,13 @@ TEST_P(RandomScenes, CompareTheEnergyModelWithMultipleShooting) {
   constexpr int most_refused_by_exact = 2;
   // Multiple shooting gives up on rods that grips pull harder, even from the shape.
   constexpr double hard_pull = 1e5;  // EI/l^2
-  // The energy model's curvature is right to its last coefficient, 1e-10 of the largest; moments
-  // near a clamp under a large force see the sum of them.
+  // The curvature of the energy model is accurate to its last coefficient, 1e-10 of the largest.
+  // The error of moments near a clamp under a large force is the sum over all coefficients.
   constexpr double energy_defect = 1e-6;
   constexpr double exact_defect = 1e-9;
   int refused_by_energy = 0;
   int refused_by_exact = 0;
-  // Soft rods take seconds each; the program is for them.
+  // Soft rods take seconds each; the program dlo_random_scenes computes them.
   constexpr double softest = 30;  // largest Gamma that is tested
   std::uint64_t taken = 0;
   for (std::uint64_t number = 0; taken < count; ++number) {
@@ -38,8 +38,8 @@ TEST_P(RandomScenes, CompareTheEnergyModelWithMultipleShooting) {
     const Problem problem = test::random_problem(number, GetParam());
     if (problem.weight_per_length.norm() > softest) continue;  // of unit length and stiffness
     ++taken;
-    // A search of its own takes a second, a way of its own to the twist several; the program makes
-    // one for each.
+    // A search by exact takes a second, and a separate continuation in the twist several seconds.
+    // The program dlo_random_scenes makes them for every problem.
     const bool searches = curved || (taken % 10 == 0 && !twisted);
     const test::ComparedScene scene = test::compare_models(
         number, problem, 20, searches ? test::ExactFrom::search : test::ExactFrom::energy);
@@ -72,8 +72,8 @@ INSTANTIATE_TEST_SUITE_P(PlaneAndSpace, RandomScenes,
                          [](const auto& space) { return test::name_of(space.param); });
 
 TEST(RankedStarts, ReachEnergiesAsLowAsAnotherSearch) {
-  // In 911 three starts cost as much as the second one but for a twentieth of what they fall by;
-  // one of them leads to the lowest shape.
+  // In scene 911 the estimated energies of three initial guesses are equal to the second one within
+  // a twentieth of the decrease; one of these leads to the equilibrium of lowest energy.
   constexpr double softest = 30;  // largest Gamma that is tested
   int taken = 0;
   for (std::uint64_t number = 911; taken < (test::sanitized ? 1 : 11); ++number) {

@@ -136,8 +136,8 @@ TEST(RedundantObstacles, FloorsThatAreTiltedALittleAreAsTheHighestOne) {
   }
 }
 
-// Below the rod, out of the floor by less than a face is taken to be flush: it goes on downwards
-// only.
+// A block protrudes from the floor below the rod by less than the tolerance for flush faces, and
+// must not act as a wall.
 TEST(RedundantObstacles, ABlockSunkToItsTopIsNoWall) {
   Problem problem = test::heavy_cantilever(80, 0);
   problem.obstacles = {{Body::half_space({0, -0.2, 0}, {0, 1, 0})}};
@@ -149,7 +149,8 @@ TEST(RedundantObstacles, ABlockSunkToItsTopIsNoWall) {
   EXPECT_LT(found.evaluations, 2 * alone.evaluations);
 }
 
-// A rod that the lower face of a block pushes out would be caught between the block and the floor.
+// If the lower face of a block pushed out the rod, the rod would be caught between the block and
+// the floor.
 TEST(RedundantObstacles, ABlockThatStandsOnTheFloorCarriesARodAsADeeperOne) {
   struct Scene {
     double gamma, pitch, depth;  // of the block's top

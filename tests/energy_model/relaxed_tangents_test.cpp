@@ -74,7 +74,7 @@ TEST(RelaxedTangents, CloseTheirGapsAndComeToRest) {
           }
           EXPECT_TRUE(of.closed(gap)) << "span " << k << ": " << gap.norm();
         }
-        // Ten times the last step of a tangent.
+        // The limit is ten times the last step of a tangent.
         EXPECT_LT(largest_angle(span, mesh, polygon), 1e-3) << "span " << k;
       }
     }

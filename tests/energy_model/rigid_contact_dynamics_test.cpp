@@ -117,7 +117,8 @@ TEST(RigidContactDynamics, DampedItComesToRestAsInEquilibrium) {
       const double apart =
           (last.sample(dense).points - rest.sample(dense).points).colwise().norm().maxCoeff();
       EXPECT_LT(apart, depth / 2);
-      // A force at 0.5 whose place is known to the depth is known to 3 depth / 0.5 of itself.
+      // The position of a force at 0.5 is known to `depth`, so the force has a relative error of 3
+      // depth / 0.5.
       const double allowed = 6 * depth * gamma;
       EXPECT_LT((last.obstacles[0] - rest.obstacles[0]).norm(), allowed);
       EXPECT_LT((last.grips[0].force - rest.grips[0].force).norm(), allowed);

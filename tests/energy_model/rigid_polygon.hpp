@@ -98,7 +98,8 @@ class RigidPolygon {
           (angle + around_.material_damping * rate) / segment_ - around_.natural_curvature;
       const Eigen::Vector2d on_a = moment / a.squaredNorm() * Eigen::Vector2d(-a.y(), a.x());
       const Eigen::Vector2d on_b = moment / b.squaredNorm() * Eigen::Vector2d(-b.y(), b.x());
-      // The joint turns a on and b back.
+      // The moment of the joint rotates the segment before it forwards and the one after it
+      // backwards.
       forces.col(i) += on_a + on_b;
       forces.col(i - 1) -= on_a;
       forces.col(i + 1) -= on_b;

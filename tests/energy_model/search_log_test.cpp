@@ -55,7 +55,7 @@ TEST(SearchLog, EachEquilibriumHasTheEnergiesOfTheStableOnes) {
     }
     ASSERT_GE(stable.size(), 2);
     for (const Equilibrium& found : search.equilibria) EXPECT_EQ(found.stable_energies, stable);
-    // A search for the lowest ends earlier.
+    // A search for the equilibrium of lowest energy ends earlier and finds a subset of these.
     const Equilibrium lowest = solve_energy(problem);
     ASSERT_FALSE(lowest.stable_energies.empty());
     EXPECT_EQ(lowest.stable_energies.front(), lowest.energy.total());
@@ -69,7 +69,8 @@ TEST(SearchLog, EachEquilibriumHasTheEnergiesOfTheStableOnes) {
 }
 
 TEST(SearchLog, AShapeThatTurnsFreelyIsListedOnce) {
-  // About the line through its pins, on which its weight, if any, is too.
+  // Shapes that differ by a rotation about the line through the pins count once. The weight, if
+  // any, is along this line.
   for (const double gamma : {0.0, 10.0, 40.0}) {
     SCOPED_TRACE(gamma);
     Problem pins = heavy_cantilever(gamma, 0);
@@ -91,7 +92,8 @@ TEST(SearchLog, AShapeThatTurnsFreelyIsListedOnce) {
     };
     for (std::size_t i = 0; i < all.size(); ++i) {
       for (std::size_t j = 0; j < i; ++j) {
-        // Bent to the left and to the right in one plane both count.
+        // In a plane, a shape that bends to the left and one that bends to the right are different
+        // equilibria.
         if (!leaves_plane(all[i]) && !leaves_plane(all[j])) continue;
         EXPECT_GT((distances(all[i]) - distances(all[j])).norm(), 1e-5) << i << ", " << j;
       }

@@ -86,8 +86,8 @@ Problem with_block_in_the_way(int seed) {
   return problem;
 }
 
-// For any side to which a load moves the rod, and on which it stays without the load: the shape
-// that is found without this help has no more energy.
+// A temporary load moves the rod to either side of a body, and the rod stays there. The equilibrium
+// that a search without this load finds has no more energy.
 TEST(SidesOfBodies, WhatIsFoundCostsNoMoreThanWhatALoadLeadsTo) {
   constexpr int scenes = 100;
   int led = 0;

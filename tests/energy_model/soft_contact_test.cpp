@@ -41,7 +41,8 @@ std::vector<YieldingScene> yielding_scenes() {
   ball.obstacles = {{Body::sphere({0.35, -0.25, 0.1}, 0.15), 300}};
   scenes.push_back({"ball", ball, {0.3, 0.9, 0.1}});
   scenes.back().way.normalize();
-  // The axis is a hundredth of the length beside the rod, and forces turn within that way.
+  // The axis of the cylinder is 0.01 l away from the rod, and the contact force changes direction
+  // within this distance.
   Problem deep = heavy_cantilever(2, 0);
   deep.grips.push_back({1, {0.98, 0, 0}, Eigen::Vector3d::UnitX()});
   deep.obstacles = {{Body::cylinder({0.43, -0.03, 0}, {0, 0, 1}, 0.09), 2e4}};
@@ -196,12 +197,13 @@ TEST(SoftContact, ARodInTheMiddlePlaneOfADeepBoxLeavesIt) {
   ASSERT_EQ(middle.status, SolveStatus::converged) << middle.message;
   ASSERT_EQ(beside.status, SolveStatus::converged) << beside.message;
   EXPECT_GT(std::abs(test::point_at(middle, 1).z()), 0.01);
-  // By the force across times the way.
+  // The energies differ by the out-of-plane contact force times the displacement.
   EXPECT_NEAR(middle.energy.total(), beside.energy.total(),
               1.2e-4 * std::abs(middle.obstacles.at(0).z()));
 }
 
-/// Contact too short for the nodes of a shape without ends of contact.
+/// The contact interval is shorter than the distance of nodes in a shape whose elements do not end
+/// where contact ends.
 TEST(SoftContact, WhatIsFollowedIsTheShapeThatItWas) {
   Problem problem = heavy_cantilever(15, 0);
   problem.grips = {{0, Eigen::Vector3d::Zero()}, {1, {0.58, -0.49, -0.25}}};

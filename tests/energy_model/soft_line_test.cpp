@@ -95,7 +95,8 @@ TEST(SoftLine, IsAsNearToTheRodAsItSays) {
       const Equilibrium rod = test::converged(solve_energy(problem));
       const double missed = lines_apart(*soft, rod);
       EXPECT_LT(missed, soft->error_estimate) << stiffness;
-      // Second order in the layers' lengths, which is first order in EI.
+      // The error is of second order in the length of the bending layers; this length is
+      // proportional to EI^(1/2).
       if (before > 0) {
         EXPECT_GT(before / missed, 7) << stiffness;
       }
@@ -143,7 +144,8 @@ TEST(SoftLine, LiesOnAFloor) {
   const Equilibrium soft = test::converged(solve_energy(on_floor(1e-12)));
   ASSERT_EQ(soft.contacts.size(), 1U);
   const ContactPart& part = soft.contacts[0];
-  // From where it lies the arm is as long as its weight, and its length and way are a catenary's.
+  // The end of the contact interval and the pin bound the free arm, a catenary. Its length equals
+  // its weight.
   const double arm = 1 - part.end;
   const double a = soft.grips[1].force.x();
   EXPECT_NEAR(soft.grips[1].force.z(), arm, 2e-6);

@@ -106,7 +106,8 @@ class StableStates {
   /// stiffness.
   [[nodiscard]] std::optional<Eigen::VectorXd> relaxed(const energy_model::Problem& problem,
                                                        Eigen::VectorXd angles) const {
-    // At the end a clamp's angle is the one nearest to the start's.
+    // The angle at the last clamp is the one nearest to the last angle of the initial guess, modulo
+    // full turns.
     std::optional<double> last;
     if (problem.grips.size() > 1 && problem.grips[1].direction) {
       const double clamp = angle_of(*problem.grips[1].direction);

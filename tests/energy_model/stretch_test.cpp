@@ -101,7 +101,7 @@ TEST(Stretch, OfACantileverIsThatOfAnIntegrationFromItsClamp) {
   EXPECT_NEAR(y[1], 0, 1e-10);
   EXPECT_NEAR(y[2], point.x(), 1e-10);
   EXPECT_NEAR(y[3], point.y(), 1e-10);
-  // Without stretch the tip is elsewhere.
+  // The tip of the inextensible rod is elsewhere.
   problem.axial_stiffness.reset();
   const Vector3d rigid = solve_exact(problem).sample(tip).points.col(0);
   EXPECT_GT((rigid - point).norm(), 0.02);
@@ -115,7 +115,7 @@ TEST(Stretch, HoldsARodBetweenClampsThatAreFartherApart) {
   EXPECT_NEAR(solved.grips[1].force.x(), 20, 1e-9);
   EXPECT_NEAR(solved.grips[0].force.x(), -20, 1e-9);
   EXPECT_NEAR(solved.energy.stretch, 0.2, 1e-11);
-  // Its own length apart, and bent by its weight.
+  // The distance of the clamps equals the unstretched length, and the weight bends the rod.
   problem.grips[1].position.x() = 3;
   problem.weight_per_length = {0, -1, 0};
   const Equilibrium sags = test::converged(solve_exact(problem));

@@ -92,7 +92,8 @@ TEST_P(BothModels, EqualStiffnessesAreARoundRod) {
   }
 }
 
-// Whichever axis is across the plane, and at whichever end the clamp is.
+// The result does not depend on which axis is perpendicular to the plane, nor on which end is
+// clamped.
 TEST_P(BothModels, InAPlaneIsTheRoundRodOfItsStiffnessThere) {
   constexpr double B1 = 2.5;
   constexpr double B2 = 0.7;
@@ -201,7 +202,8 @@ TEST(Strip, ModelsAgreeInSpace) {
 }
 
 TEST(Strip, WithoutClampsLiesOnItsSoftSide) {
-  // Two pins: it rolls until it bends about its weak axis, whichever that is.
+  // Between two pins the strip rolls until it bends about its softer axis, whichever of d1 and d2
+  // that is.
   for (const double about_d2 : {0.5, 2.0}) {
     Problem problem = strip(1, about_d2);
     problem.grips = {{0, {0, 0, 0}, std::nullopt, std::nullopt},
@@ -224,7 +226,7 @@ TEST(Strip, WantsPositiveStiffnessesAndTorsion) {
   Problem problem = strip(1, 2);
   problem.sections = {{0.1, 0.2, 1, 1, {0, 0, 0}, -1}};
   EXPECT_NE(refused(problem).find("bending_stiffness_2 of a section"), std::string::npos);
-  // A section alone makes directors.
+  // Two stiffnesses in one section suffice to give the rod material directors.
   problem = round_rod(problem, 1);
   problem.sections[0].bending_stiffness_2 = 3;
   EXPECT_EQ(refused(problem), "no error");

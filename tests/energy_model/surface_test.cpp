@@ -48,7 +48,8 @@ RodState moved(RodState state, const Eigen::Matrix<double, 12, 1>& by) {
   return state;
 }
 
-/// A cross-section that begins to lie: what lying_conditions() ask is made true by r, R, m and n.
+/// Returns a cross-section at which contact begins, by changing r, R, m and n until
+/// lying_conditions() are zero.
 RodState lying(const Surface& surface, const RodSection& section, RodState state) {
   for (int step = 0; step < 30; ++step) {
     const LyingConditions now = lying_conditions(surface, section, state);
@@ -58,8 +59,8 @@ RodState lying(const Surface& surface, const RodSection& section, RodState state
   return state;
 }
 
-// The four conditions at the begin and the pressure along: so gap and slope stay zero, whatever the
-// section is and however the rod is twisted.
+// If the four conditions hold at the begin, the reaction pressure keeps gap and slope zero along
+// the surface, for any section and twist.
 TEST(Surface, ARodThatBeginsToLieStaysThere) {
   std::mt19937 random(11);
   for (const Surface& surface : surfaces()) {

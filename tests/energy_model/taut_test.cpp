@@ -142,7 +142,8 @@ TEST(TautLine, LeavesACoupleOnAClampToThatClamp) {
   EXPECT_EQ(shot.grips[1].torque, Eigen::Vector3d(0, 0, -2));
 }
 
-// The distribution over the grips depends on the tension, which is undetermined.
+// The forces of the grips against such a couple depend on the tension, which the problem does not
+// determine.
 TEST(TautLine, RefusesACoupleThatNoClampTakes) {
   Problem inside = taut_between_clamps();
   inside.loads = {{1, {0, 0, 0}, {0, 0, 1e-3}}};
@@ -193,8 +194,8 @@ TEST(Taut, TensionFollowsFromTheSlack) {
         if (!segments[0].taut()) continue;
         ++taut;
         const Eigen::Vector3d pull = solved.grips[1].force;
-        // Layers and sag are added as if neither knew of the other: right but for the layers' share
-        // of the length.
+        // The estimate adds the effects of bending layers and sag as if they were independent. Its
+        // error is proportional to the layers' part of the length.
         const double tolerance = 1.5 / std::sqrt(pull.norm());
         EXPECT_NEAR(segments[0].tension, pull.norm(), tolerance * pull.norm())
             << slack << ", " << angle << ", " << pinned;

@@ -38,7 +38,7 @@ TEST(TrustRegionStep, IsTheLowestWithinTheRadius) {
         }
         EXPECT_LE(z.norm(), 1.011 * length);
         EXPECT_GE(z.norm(), 0.74 * length);
-        // The lowest on the sphere of its own length, by eigenvalues and bisection.
+        // The minimum on the sphere through z, computed from all eigenvalues by bisection.
         const Eigen::VectorXd pull = eigen.eigenvectors().transpose() * right;
         double low = std::max(0.0, -smallest);
         double high = low + right.norm() / z.norm();
@@ -56,8 +56,8 @@ TEST(TrustRegionStep, IsTheLowestWithinTheRadius) {
         lowest[0] = std::copysign(std::sqrt(std::max(0.0, z.squaredNorm() - others)), lowest[0]);
         const double wanted = lowest.dot(eigenvalues.cwiseProduct(lowest)) / 2 - pull.dot(lowest);
         const double found = z.dot(hessian * z) / 2 - right.dot(z);
-        // mu is known to rounding, but to the hundredth at which its bounds are one another where
-        // what pulls along the smallest one does not set it that far from there.
+        // mu is known to rounding if the force along the smallest eigenvector is large enough.
+        // Otherwise it is known to the hundredth at which the search for mu ends.
         const double rounding = 1e-9 * (1 + std::abs(wanted));
         const bool told = std::abs(pull[0]) > 2e-2 * high * z.norm();
         const double unknown = told ? 0 : 1e-2 * high;

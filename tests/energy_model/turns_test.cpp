@@ -138,7 +138,7 @@ TEST(Roll, CountsFromTheFrameThatTheShortestRotationBrings) {
   const Vector3d first = held_d1(problem, problem.grips[0]);
   const Vector3d to = problem.grips[1].direction->normalized();
   EXPECT_NEAR(d1.dot(to), 0, 1e-15);
-  // About the axis of that rotation both frames stand alike.
+  // Both frames have the same component along the axis of this rotation.
   const Vector3d axis = Vector3d::UnitX().cross(to).normalized();
   EXPECT_NEAR(d1.dot(axis), first.dot(axis), 1e-15);
   EXPECT_NEAR(held_turns(problem, problem.grips[0], problem.grips[1]).value(), 1.5 / (2 * pi),
@@ -220,7 +220,8 @@ Problem curved_rod(std::mt19937& random) {
   return problem;
 }
 
-/// Turns of a shape that it lacks; those of the other homotopy class are odd.
+/// Returns the prescribed turns minus the twist and the writhe of the shape; odd if the shape
+/// belongs to the other homotopy class.
 double lacking(const Problem& problem, const Equilibrium& rod) {
   const double held = held_turns(problem, problem.grips[0], problem.grips[1]).value();
   return held - rod.twists.at(0).angle / (2 * pi) - writhe(rod.sample, 0, 1)->value.value();

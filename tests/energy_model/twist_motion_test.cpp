@@ -149,7 +149,7 @@ TEST(TwistMotion, AStraightenedWireCurlsAsAPolygon) {
   }
 }
 
-// A torque is the same all along a straight rod, and twist has no inertia to change that.
+// The torque is constant along a straight rod, because twist has no inertia.
 TEST(TwistMotion, TorqueOfASlackRodIsThatOfItsTurns) {
   Problem problem = cable();
   problem.weight_per_length.setZero();

@@ -134,7 +134,7 @@ TEST(Twist, HoldsAHelixUnderItsWrench) {
   }
 }
 
-// Each of both puts the twist in by a continuation of its own.
+// Each of the two models introduces the twist by its own continuation.
 TEST(Twist, AgreesWithMultipleShooting) {
   Problem problem = turned_rod(0.7, 0, 8);
   problem.grips.back().direction = Eigen::Vector3d(0.8, 0.3, -0.5);
@@ -155,7 +155,7 @@ TEST(Twist, AgreesWithMultipleShooting) {
   problem.grips.front().frame->d1 = Eigen::Vector3d(0.2, 1, 0.4);
   problem.grips.back().frame->d1 = Eigen::Vector3d(1, -0.2, 0.6);
   expect_agreement();
-  // Half a turn is +pi for both, on whichever side of it rounding is.
+  // A rotation of half a turn counts as +pi in both models, whatever the rounding error is.
   for (const double aside : {-1e-12, 1e-12}) {
     problem = turned_rod(0.8, 0, 8);
     problem.grips.front().frame->d1 = Eigen::Vector3d::UnitZ();
@@ -190,7 +190,7 @@ TEST(Twist, IsRefusedWhereItMeansNothing) {
   EXPECT_THROW((void)solve_energy(problem), std::invalid_argument);
 }
 
-// A shape to start from has the turns of another roll.
+// The initial guess has the number of turns of another roll.
 TEST(Twist, StartedFromAnotherRollItMeetsItsOwn) {
   Problem problem = test::framed_clamps(5, 0.7, 0.8, 0);
   const auto solved = [&problem](double roll, const Equilibrium* start) {

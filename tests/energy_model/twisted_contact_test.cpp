@@ -186,7 +186,8 @@ TEST(TwistedContact, StripsSectionsAndCurvedRodsLieOnFloors) {
       };
       constexpr double height = -0.12;
       const Equilibrium found = solve_energy(with_floor(height));
-      // An intrinsically curved rod that lies up to its free end, which rises again, is refused.
+      // The search may reject an intrinsically curved rod that lies on the floor up to near its
+      // free end, where it rises again.
       if (held == Held::one_clamp && !succeeded(found.status)) {
         EXPECT_EQ(found.status, SolveStatus::not_verified) << found.message;
         EXPECT_NE(found.message.find("contacts did not converge"), std::string::npos);

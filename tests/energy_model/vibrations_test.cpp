@@ -179,7 +179,7 @@ TEST(Vibrations, OfAHangingRodComeToThoseOfAChain) {
         modes_of(unit_rod({0, -gamma, 0}, {clamped(0, Vector3d::Zero(), -Vector3d::UnitY())}), 1);
     over[i] = (found.modes[0].omega() / (chain * std::sqrt(gamma)) - 1) * std::sqrt(gamma);
   }
-  // Half a layer's length, as the period goes with the root of the length.
+  // The layer shortens the rod by its length, which changes the frequency by half of that share.
   EXPECT_NEAR(over[2], 0.5, 0.01);
   EXPECT_NEAR(over[2] - over[1], (over[1] - over[0]) / 10, 0.3 * std::abs(over[1] - over[0]) / 10);
 }
@@ -278,7 +278,8 @@ TEST(Vibrations, OfAnUprightRodStopWhereItBuckles) {
   FAIL() << "the upright shape was not found";
 }
 
-// The clamp in the middle parts them: each half vibrates alone, at four times the frequency.
+// A clamp in the middle divides the rod into two spans of half the length, with four times the
+// frequency.
 TEST(Vibrations, OfSpansBetweenClampsAreTheirOwn) {
   const Vibrations found =
       modes_of(unit_rod(Vector3d::Zero(), {clamped(0.5, Vector3d::Zero(), Vector3d::UnitX())}), 4);

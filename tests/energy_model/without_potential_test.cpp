@@ -1,5 +1,5 @@
-// Loads without a potential: couples in space, loads that follow the rod, drag; against closed
-// forms and integrations of their own.
+// Tests of loads without a potential: couples in space, loads that follow the rod, and drag.
+// References are closed forms and independent integrations.
 
 #include <gtest/gtest.h>
 
@@ -71,8 +71,9 @@ Eigen::Matrix3d frame_at(const TipState& y) {
   return R;
 }
 
-/// The tip of the rod that is clamped at the origin with a frame, under a tip load that follows it,
-/// without weight: what the tip's own axes see, seen from the clamp.
+/// Returns the tip of a weightless rod that is clamped at the origin with a frame, under a tip load
+/// given in the axes of the tip. The rod is integrated in those axes and then rotated to the
+/// clamp's frame.
 Eigen::Vector3d followed_tip(const TipRod& rod, const Eigen::Matrix3d& clamp,
                              const Eigen::Vector3d& force, const Eigen::Vector3d& torque) {
   const TipState y =
@@ -203,7 +204,8 @@ TEST(WithoutPotential, ACoupleAcrossAClampInAnyPlaneRollsTheRodUp) {
     const Eigen::Vector3d expected =
         std::sin(angle) / angle * direction + (1 - std::cos(angle)) / angle * axis.cross(direction);
     EXPECT_LT((place_along(result) - expected).norm(), 1e-11);
-    // Following the section it is the same one.
+    // A couple that follows the section is equal to this dead couple, because its axis does not
+    // rotate.
     problem.loads = {{1, {0, 0, 0}, {0, angle, 0}, true}};
     problem.grips[0].frame = FrameHold{.d1 = axis.cross(direction)};
     problem.torsional_stiffness = 0.8;
@@ -259,7 +261,7 @@ TEST(WithoutPotential, LoadsThatFollowInSpaceTwistAndBendEveryRod) {
     const Eigen::Matrix3d clamp = rolled(frame_along(direction, Eigen::Vector3d(1, 0.1, 0.3)), 0.4);
     const TipRod rod{{1, second, 0.6}, Eigen::Vector3d::Zero(), {}};
     EXPECT_LT((place_along(result) - followed_tip(rod, clamp, force, torque)).norm(), 1e-9);
-    // It is found again from itself.
+    // The result is found again from itself as the initial guess, with fewer evaluations.
     const Equilibrium again = solve_exact(problem, {.start = &result});
     expect_balance_alone(again);
     EXPECT_LT((place_along(again) - place_along(result)).norm(), 1e-9);

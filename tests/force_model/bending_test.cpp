@@ -50,8 +50,8 @@ TEST_P(BendingOfBothLaws, OpensTheJoint) {
   EXPECT_GT(forces(1, 1), 0);
 }
 
-// The paper's, too: the parts of F across both segments have the torque of F about the chord that
-// it points along.
+// This holds for the paper's law too: the parts of F perpendicular to both segments have the same
+// torque as F, which points along the chord.
 TEST_P(BendingOfBothLaws, ForcesAndTorquesSumToZeroForAnySegments) {
   for (const double spread : {0.0, 0.1, 0.9}) {
     for (unsigned seed = 0; seed < 100; ++seed) {

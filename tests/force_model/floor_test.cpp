@@ -54,7 +54,7 @@ Eigen::Matrix3Xd sagging(const Rod& rod, double sag) {
   return shape;
 }
 
-/// The sag with which the polygon is as long as the rod.
+/// Returns an initial shape whose sag is such that the polygon has its unstretched length.
 FloorStart over_floor(Eigen::Index points, double height = 0.2) {
   FloorStart start;
   start.rod = rod_over_floor(points, height);
@@ -98,7 +98,7 @@ TEST(RigidFloor, RodsOnItComeToRestFromEveryRoundingOfTheirStart) {
             << result.remaining_error;
         most = std::max(most, result.steps);
         if (rest.cols() == 0) rest = simulation.points();
-        // Each is within 1e-7 of its length of the same equilibrium.
+        // Both shapes are within 1e-7 of the length of the same equilibrium.
         EXPECT_LT((simulation.points() - rest).norm() / std::sqrt(points),
                   2e-7 * start.rod.length());
       }
@@ -107,8 +107,8 @@ TEST(RigidFloor, RodsOnItComeToRestFromEveryRoundingOfTheirStart) {
   RecordProperty("most_steps", static_cast<int>(most));
 }
 
-/// Between two heights of a clamp with which one point more or less touches, that point is on the
-/// floor without a force: whether it is pressed is rounding.
+/// At a certain height of the clamp one point changes between contact and no contact. It is then on
+/// the floor without a force, and rounding determines whether it is pressed.
 TEST(RigidFloor, APointThatBarelyTouchesItDoesNotPreventRest) {
   constexpr Eigen::Index points = 24;
   const auto touching_at = [](double height) {

@@ -146,7 +146,7 @@ TEST(ImplicitStepper, MovesARestingRodWithItsGripperInOneSolve) {
   simulation.move_grip(0, targets, way);
   ASSERT_EQ(simulation.step().status, StepStatus::good);
   EXPECT_EQ(simulation.steps() - before, 1);
-  // Displacement of the slowest mode by the rounding of positions, at either place.
+  // Rounding of the positions displaces the slowest mode, before the movement and after it.
   const double rounding = check_equilibrium(simulation.rod(), simulation.points()).rounding_error;
   EXPECT_LT(rounding, 1e-7 * soft.length);
   EXPECT_LT(rms_between(simulation.points(), rest.colwise() + way),
@@ -187,7 +187,7 @@ TEST(ImplicitStepper, ArrivesWithAGripperThatJumpsAndTurnsRound) {
   ASSERT_EQ(simulation.step().status, StepStatus::good);
   EXPECT_EQ(simulation.points().leftCols(2), targets);
   ASSERT_EQ(simulation.relax().status, RelaxStatus::at_rest);
-  // Nothing is left of the way there.
+  // The shape at rest does not depend on the path to it.
   Rod turned = soft.rod();
   turned.grips[0].targets = targets;
   Eigen::Matrix3Xd straight = soft.straight();

@@ -44,7 +44,7 @@ double rms_distance(const Eigen::Matrix3Xd& a, const Eigen::Matrix3Xd& b) {
   return (a - b).norm() / std::sqrt(static_cast<double>(a.cols()));
 }
 
-/// Relaxes, and holds the shape against the one after four times as many further steps.
+/// Compares the shape after relax() with that after four times as many further steps.
 void expect_rest(const Start& start, const std::string& what, double tolerance = 1e-7) {
   Simulation simulation(start.rod, start.points, {});
   const RelaxResult result = simulation.relax({.tolerance = tolerance});
@@ -54,7 +54,7 @@ void expect_rest(const Start& start, const std::string& what, double tolerance =
   const double error = rms_distance(claimed, simulation.points());
   EXPECT_LT(error, tolerance * start.rod.length()) << what;
   EXPECT_LT(result.remaining_error, tolerance * start.rod.length()) << what;
-  // A bound, but for what is left after stepping on.
+  // remaining_error is a bound of the error, up to the error that remains after the further steps.
   EXPECT_LT(error, 1.1 * result.remaining_error + 1e-11) << what;
   EXPECT_GT(error, 0.2 * result.remaining_error - 1e-11) << what;
 }
@@ -117,8 +117,8 @@ TEST(AtRest, IsClaimedForARodThatTurnsFreelyAndSaysSo) {
 }
 
 TEST(AtRest, IsNotClaimedWhereRoundingHidesWhatBendsTheRod) {
-  // So many points that a step of rounding is more than the weight of one: straight, as it starts,
-  // nothing seems to pull at them.
+  // There are so many points that the rounding error of a step's force exceeds the weight of one
+  // point. The straight initial shape therefore seems to be without force.
   Start start = between_pins(100'001, 1, 1e3, {BendingLaw::hooke, 1e-3});
   start.points.row(2).setZero();
   const EquilibriumCheck check = check_equilibrium(start.rod, start.points);

@@ -54,8 +54,8 @@ TEST(Solid, DistributesForcesWithinSegmentsByTheLeverRule) {
   EXPECT_NEAR(solid_energy(ball, points), potential, 1e-14);
 }
 
-/// Returns the force and the moment about a point that balance the loads: those of the only gripper
-/// of a rod at rest.
+/// Returns the force and the moment about a point that balance the loads. For a rod at rest with a
+/// single gripper these are the gripper's force and moment.
 GripReaction balancing(const Rod& rod, const Eigen::Matrix3Xd& points,
                        const Eigen::Vector3d& about) {
   GripReaction result;
@@ -119,7 +119,8 @@ TEST(GripReaction, OfTwoGripsIsNotCountedTwice) {
   EXPECT_THROW(check(wire.rod), std::invalid_argument);
   EXPECT_THROW((void)grip_reactions(wire.rod, wire.points), std::invalid_argument);
   EXPECT_THROW(Simulation(wire.rod, wire.points, {}), std::invalid_argument);
-  // Springs may pull at the same point: each exerts its own force, a rigid grip what is left.
+  // Several spring grips may hold the same point: each exerts its own force, and a rigid grip the
+  // remaining force.
   for (const GripHold first : {GripHold::spring, GripHold::rigid}) {
     wire.rod.grips[0].hold = first;
     wire.rod.grips[1].hold = GripHold::spring;

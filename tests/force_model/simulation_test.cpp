@@ -108,7 +108,7 @@ TEST(CatchUpLoop, ReportsTheRemainderWhenItsStepsAreUsedUp) {
   EXPECT_EQ(simulation.advance(3, 1000).status, StepStatus::good);
   EXPECT_EQ(simulation.steps(), 1003);
   EXPECT_EQ(simulation.owed_steps(), 0);
-  // Also where it has no steps to begin with.
+  // The status is the same if no step is allowed at all.
   EXPECT_EQ(simulation.advance(2, 0).status, StepStatus::behind);
   EXPECT_EQ(simulation.owed_steps(), 2);
 }
@@ -161,7 +161,7 @@ TEST(Relax, CreepingIsNotRest) {
 }
 
 TEST(Relax, IsNotFooledByManyPointsOrFastModes) {
-  // With many points the first steps only shake the fastest modes; nothing has fallen yet.
+  // With many points the first steps only excite the fastest modes; the rod has hardly fallen.
   SteelRod steel;
   steel.points = 400;
   Simulation simulation(steel.rod({BendingLaw::hooke, steel.EI}, 660), steel.straight(), {});
@@ -180,7 +180,7 @@ TEST(Relax, FindsRestBetweenModesThatAreFarApart) {
   EXPECT_EQ(result.status, RelaxStatus::at_rest);
   Simulation reference(steel.rod({BendingLaw::hooke, steel.EI}, 1e4), steel.straight(), {});
   ASSERT_EQ(reference.relax().status, RelaxStatus::at_rest);
-  // The softer one stretches by weight / c_c = 1.2e-5.
+  // The simulated rod is softer than the reference and stretches by weight / c_c = 1.2e-5.
   EXPECT_LT((simulation.points() - reference.points()).colwise().norm().maxCoeff(),
             4e-5 * steel.length);
 }
@@ -306,7 +306,7 @@ TEST(Simulation, SpringGripYieldsByWeightOverStiffness) {
   const double weight = steel.weight_per_length * steel.length;
   const GripReaction reaction = grip_reactions(rod, simulation.points()).front();
   EXPECT_NEAR(reaction.force.y(), weight, 1e-7);
-  // Two points share the weight, so the gripper's two springs yield by half of it on the average.
+  // Each of the gripper's two springs carries half of the weight on average.
   const Eigen::Matrix3Xd yielded = rod.grips.front().targets - simulation.points().leftCols(2);
   EXPECT_NEAR(yielded.row(1).mean(), weight / 2 / 50, 1e-9);
   EXPECT_LT(yielded.row(0).cwiseAbs().maxCoeff(), 1e-9);

@@ -129,7 +129,8 @@ INSTANTIATE_TEST_SUITE_P(Variants, UnlimitedStepKernel,
                          name);
 
 TEST(Kernel, BoundsTheModesLikeModeBounds) {
-  // An automatic step of both follows from the bound: c_F is chosen at the first step's beginning.
+  // The automatic step size is chosen from the bound at the beginning of the first step, in both
+  // implementations.
   for (const BendingLaw law : {BendingLaw::paper, BendingLaw::hooke}) {
     for (unsigned seed = 0; seed < 50; ++seed) {
       const Variant variant{law, Stepper::automatic, GripHold::spring, Walls::two, Space::full};

@@ -40,8 +40,9 @@ Eigen::MatrixXd stiffness_matrix(const Rod& rod, const Eigen::Matrix3Xd& points)
   return full_stiffness(rod, points).bottomRightCorner(n, n);
 }
 
-/// The largest eigenvalue of the stiffness between the points that no rigid grip holds. Negative
-/// ones, of a fold that opens to the side, make no step overshoot: they grow with any c_F.
+/// Returns the largest eigenvalue of the stiffness of the points that no rigid grip holds. Negative
+/// eigenvalues, such as those of a folded rod, do not limit the step: their modes grow with any
+/// c_F.
 double measured_fastest(const Rod& rod, const Eigen::Matrix3Xd& points) {
   std::vector<bool> free(static_cast<std::size_t>(points.cols()), true);
   for (const Grip& grip : rod.grips) {

@@ -65,7 +65,7 @@ TEST(Twist, ForcesAreTheGradientOfTheEnergy) {
   constexpr Eigen::Index n = 12;
   const Eigen::Matrix3Xd points = random_polygon(5, n, 0.05, 0.2);
   const TwistedSpan span = random_span(n);
-  // Frames come along with their segments without turning about them.
+  // The end frames rotate with their segments, by the shortest rotation.
   const auto energy = [&](const Eigen::Matrix3Xd& moved) {
     TwistedSpan carried = span;
     carried.first_d1 = Eigen::Quaterniond::FromTwoVectors(direction(points, span.first_segment),
@@ -104,7 +104,7 @@ TEST(Twist, AtRestTheGripsBalanceEachOtherAndBearIt) {
   EXPECT_LT((grips[0].force + grips[1].force).norm(), 1e-5 * scale);
   const Eigen::Vector3d arm = rod.grips[1].reference;
   EXPECT_LT((grips[0].torque + grips[1].torque + arm.cross(grips[1].force)).norm(), 1e-5 * scale);
-  // Held segments lie along x, so the torque about it is the twisting moment.
+  // The clamped segments are along x, so the torque about x is the twisting moment.
   const std::vector<TwistedSpan> spans = twisted_spans(rod);
   ASSERT_EQ(spans.size(), 1);
   EXPECT_NEAR(spans[0].compliance, twisted.length / twisted.GJ, 1e-14);
@@ -166,7 +166,7 @@ TEST(Twist, StepsCountItsStiffness) {
     const double fastest =
         Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd>(K).eigenvalues().maxCoeff();
     EXPECT_LT(fastest, mode_bounds(rod, points).fastest) << GJ;
-    // Without it the bound would be wrong.
+    // A bound that neglects the twist would be too low here.
     Rod free_to_turn = rod;
     free_to_turn.grips[1].d1.reset();
     free_to_turn.twist.angles.resize(0);
@@ -229,7 +229,7 @@ TEST(Twist, IsCountedThroughWholeTurns) {
   EXPECT_NEAR(simulation.rod().twist.angles[0], turned, 1e-9);
   const std::vector<GripReaction> grips = grip_reactions(simulation.rod(), simulation.points());
   EXPECT_NEAR(grips[1].torque.x(), twisted.GJ * turned / twisted.length, 1e-9);
-  // A frame comes along with its gripper.
+  // The frame rotates with the gripper.
   const Eigen::Matrix3d tilt(Eigen::AngleAxisd(0.2, Eigen::Vector3d::UnitZ()));
   simulation.move_grip(1, tilt * rod.grips[1].targets, tilt * rod.grips[1].reference);
   const Eigen::Vector3d carried = *simulation.rod().grips[1].d1;
@@ -271,7 +271,7 @@ TEST(Twist, PassesAPinAndAClampThatLeavesTheRodFree) {
   EXPECT_EQ(twisted_spans(rod).size(), 1);
   Simulation simulation(rod, twisted.arch(), {});
   EXPECT_EQ(simulation.relax().status, RelaxStatus::at_rest);
-  // A third frame divides it, in the order along the rod.
+  // A third gripper with a frame divides the twisted span into two, in the order along the rod.
   rod.grips.back().d1 = Eigen::Vector3d::UnitZ();
   rod.twist.angles.resize(0);
   rod.twist.stiffnesses = Eigen::VectorXd::LinSpaced(19, 1, 2);

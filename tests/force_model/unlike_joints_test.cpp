@@ -83,7 +83,8 @@ TEST(NaturalTurns, AreThoseOfTheStressFreeShapeWithoutForceAndEnergy) {
   }
   EXPECT_LT(forces.cwiseAbs().maxCoeff(), 1e-15 * 8 * couple / rest.minCoeff());
   EXPECT_NEAR(bending_energy(points, rest, bending), 0, 1e-14);
-  // The mirror image of the free shape is none: joints are turned the other way.
+  // The mirror image of the free shape is not free, because the natural angles of its joints have
+  // the opposite sign.
   const Eigen::Matrix3Xd mirrored = Eigen::Vector3d(1, -1, 1).asDiagonal() * points;
   EXPECT_GT(bending_energy(mirrored, rest, bending), 1);
 }
@@ -148,7 +149,7 @@ TEST(NaturalTurns, TheStiffnessIsTheForcesDerivativeInThePlane) {
   rod.bending.natural_turns = turns(0.4, steel.points - 2);
   Simulation simulation(rod, steel.straight(), {});
   ASSERT_EQ(simulation.relax().status, RelaxStatus::at_rest);
-  // Newton's step leads back from a small movement, but for its square.
+  // Newton's step reverses a small displacement, up to an error of second order.
   const Eigen::Matrix3Xd rest =
       simulation.points() + check_equilibrium(rod, simulation.points()).step;
   Eigen::Matrix3Xd moved = rest;

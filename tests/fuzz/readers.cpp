@@ -22,7 +22,8 @@ void promise(bool kept, const std::string& what) {
   if (!kept) throw std::logic_error("broken promise: " + what);
 }
 
-/// Whether `read` gives a value; if not, the error has to be one line, of this file.
+/// Whether `read` returns a value. If not, checks that the error is one line that begins with this
+/// file's name.
 template <typename Read>
 bool reads(const Read& read, const std::string& start) {
   try {

@@ -35,7 +35,7 @@ TEST(Body, DistancesAreThoseOfGeometry) {
   const Body capsule = Body::capsule({0, 0, 0}, {1, 0, 0}, 2, 0.5);
   EXPECT_DOUBLE_EQ(capsule.clearance({0.3, 2, 0}), 1.5);
   EXPECT_DOUBLE_EQ(capsule.clearance({4, 4, 0}), 4.5);
-  // A round edge is within the size of a box.
+  // The rounded edges are inside the given size of a box.
   const Body box = Body::box({0, 0, 0}, Matrix3d::Identity(), {2, 4, 6}, 0.25);
   EXPECT_DOUBLE_EQ(box.clearance({1.5, 0, 0}), 0.5);
   EXPECT_DOUBLE_EQ(box.clearance({0, -2.5, 1}), 0.5);
@@ -44,7 +44,7 @@ TEST(Body, DistancesAreThoseOfGeometry) {
   EXPECT_EQ(Body::box({0, 0, 0}, Matrix3d::Identity(), {2, 4, 6}, 0).smallest_radius(), 0);
 }
 
-// By differences of second order, outside of and just within each.
+// Derivatives are compared with second-order differences, outside and just inside each body.
 TEST(Body, DerivativesAreDifferences) {
   constexpr double h = 1e-4;
   for (const Body& body : bodies()) {
@@ -66,7 +66,8 @@ TEST(Body, DerivativesAreDifferences) {
   }
 }
 
-// In a plane through a ball's centre, or at a capsule's end, the surface bends out of it as well.
+// In a plane through a ball's centre, or at the end of a capsule, the surface is curved out of the
+// plane too.
 TEST(Body, BendsOutOfThePlanesThatHalveIt) {
   const Eigen::Matrix3d level = Eigen::Vector3d(0.5, 0, 0.5).asDiagonal();
   const Body ball = Body::sphere({0, 0, 0}, 1);
@@ -131,7 +132,7 @@ TEST(Body, FeaturesAreFacesEdgesAndCorners) {
   EXPECT_EQ(ball.feature({1, 2, 3}), ball.feature({-1, -2, 0}));
 }
 
-// Rounder and rounder it stays within itself.
+// A body that is rounded with a larger radius stays inside the original body.
 TEST(Body, RoundedIsWithinItself) {
   const Body box = Body::box({0.1, 0, 0}, turned(), {0.4, 0.6, 0.8}, 0.05);
   for (int k = 0; k < 40; ++k) {

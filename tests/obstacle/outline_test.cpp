@@ -25,8 +25,8 @@ double enclosed_area(const Eigen::Matrix2Xd& points) {
   return twice / 2;
 }
 
-// Where a body is symmetric about the plot's plane its outline is its cut: all points are on its
-// surface, and what they enclose is its section but for what chords cut off an arc.
+// If a body is symmetric about the plane of the plot, its outline is its section: all points are on
+// the surface, and the enclosed area is that of the section, less the segments that chords cut off.
 TEST(Outline, IsTheSurfaceInAPlaneOfSymmetry) {
   const Eigen::Vector3d middle(0.3, -0.2, 0);
   const double r = 0.1;
@@ -48,7 +48,7 @@ TEST(Outline, IsTheSurfaceInAPlaneOfSymmetry) {
     Eigen::Matrix3Xd in_space = Eigen::Matrix3Xd::Zero(3, points.cols());
     in_space.topRows<2>() = points;
     EXPECT_LT(body.clearances(in_space).cwiseAbs().maxCoeff(), 1e-12);
-    // The segment beyond a chord over an angle a has a^2 / 6 of the area of its sector.
+    // The segment that the chord of an angle a cuts off has a^2 / 6 of the area of its sector.
     const double chords = std::pow(2 * M_PI / 120, 2) / 6 * disc;
     EXPECT_NEAR(enclosed_area(points), area, chords + 1e-12);
   }
@@ -72,7 +72,7 @@ TEST(Outline, OfAnInfiniteBodyExtendsFar) {
   EXPECT_NEAR(peg.row(0).maxCoeff(), far_away + 0.1, 1e-12);
 }
 
-// A plane that is seen from above is behind everything.
+// A half-space that is seen from above is behind everything and has no outline.
 TEST(Outline, IsEmptyWhereAHalfSpaceHasNoEdge) {
   EXPECT_EQ(seen_along_z(Body::half_space({0, 0, -1}, {0, 0, 1})).cols(), 0);
   EXPECT_EQ(seen_along_z(Body::half_space({0, 0, -1}, {0, 1, 1})).cols(), 0);

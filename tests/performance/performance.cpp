@@ -43,7 +43,7 @@ double computing_time() {
   return static_cast<double>(now.tv_sec) + 1e-9 * static_cast<double>(now.tv_nsec);
 }
 
-/// Work that is repeated, and how often in a turn.
+/// A function that is timed, and its number of repetitions in one turn.
 struct Work {
   std::function<void()> run;
   long repeats = 1;
@@ -70,7 +70,7 @@ double median(std::vector<double> values) {
   return *middle;
 }
 
-/// How much longer `slow` takes than `fast`.
+/// Returns the time of one repetition of `slow` divided by that of `fast`.
 double ratio(const Work& slow, const Work& fast) {
   std::vector<double> ratios;
   ratios.reserve(turns);
@@ -78,7 +78,7 @@ double ratio(const Work& slow, const Work& fast) {
   return median(ratios);
 }
 
-/// The paper's rod with the stepper that costs most, in its plane.
+/// Returns the paper's rod in its plane, with the stepper of the highest cost.
 BatchRod steel_rod(int points) {
   SteelRod steel;
   steel.points = points;
@@ -99,7 +99,7 @@ Work step(int points) {
   });
 }
 
-/// A step of each of 64 rods.
+/// Returns the work of stepping each of 64 rods once.
 Work batch_step(int points) {
   auto batch = std::make_shared<Batch>(std::vector<BatchRod>(64, steel_rod(points)));
   return Work([batch] { batch->step(1); });
@@ -134,9 +134,9 @@ double slope_against_points() {
 
 struct Promise {
   const char* what = "";
-  double least = 0;        ///< promised, 0: no lower limit
-  double most = INFINITY;  ///< promised
-  double allowance = 0;    ///< by how much noise may miss it, as a share
+  double least = 0;        ///< promised lower limit; 0: none
+  double most = INFINITY;  ///< promised upper limit
+  double allowance = 0;    ///< share by which noise may exceed the limit
   std::function<double()> measure;
 };
 
@@ -160,7 +160,7 @@ std::vector<Promise> promises(InstructionSet set) {
   };
 }
 
-/// Prints a line. @return whether the promise is kept
+/// Prints a line for a promise. @return whether it is kept
 bool keep(const Promise& promise) {
   const double least = promise.least * (1 - promise.allowance);
   const double most = promise.most / (1 - promise.allowance);
