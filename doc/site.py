@@ -1,4 +1,4 @@
-"""What mkdocs.yml builds: every page of the tree, where it stands, and every file that a page links to.
+"""Adds every page of the tree, and every file that a page links to, to the site of mkdocs.yml.
 
 Names of headings are GitHub's, so that links between pages hold in both. A page that is not in the navigation is a
 warning, which --strict turns into an error.
@@ -18,13 +18,13 @@ log = logging.getLogger("mkdocs.dlo")
 
 
 def slug(text, separator):
-    """What GitHub calls a heading."""
+    """Returns the anchor that GitHub gives to a heading."""
     del separator
     return re.sub(r"[^\w -]", "", text.strip().lower()).replace(" ", "-")
 
 
 def pages_of(root):
-    """Paths of all pages from the root, with slashes."""
+    """Yields the paths of all pages relative to the root."""
     for folder, names, files in os.walk(root):
         here = os.path.relpath(folder, root)
         names[:] = [n for n in names

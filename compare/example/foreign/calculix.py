@@ -54,12 +54,12 @@ def unit(a):
 
 
 def mix(*terms):
-    """Sum of numbers times vectors."""
+    """Returns the sum of numbers times vectors, given as pairs."""
     return [sum(factor * vector[i] for factor, vector in terms) for i in range(3)]
 
 
 def turned(vector, axis, angle):
-    """Rodrigues' formula."""
+    """Returns a vector rotated about a unit axis (Rodrigues' formula)."""
     along = sum(a * v for a, v in zip(axis, vector))
     c = math.cos(angle)
     return mix((c, vector), (math.sin(angle), cross(axis, vector)), ((1 - c) * along, axis))
@@ -103,7 +103,7 @@ class Rod:
                     (u * self.side / 2, self.across), (v * self.side / 2, self.axis))
 
     def element_ends(self, elements):
-        """One wherever something begins, ends or acts, the others evenly between."""
+        """Returns the ends of the elements: those of rod and sections, grips, loads, and equal parts between them."""
         rod = self.scene["rod"]
         marks = {0.0, rod["length_m"]}
         marks |= {place["at_m"] for place in self.scene["grippers"] + self.scene["loads"]}
@@ -138,8 +138,8 @@ class Rod:
         return lines, [name for name in members if members[name]]
 
     def straight_edges(self, led):
-        """The middle of an edge of the section is that of its corners, but for planes that grips lead. The
-        integration does not see it move otherwise (an hourglass mode)."""
+        """Returns constraints that keep the middle of each edge of a section halfway between its corners. They
+        prevent an hourglass mode. Planes that grips move are excluded."""
         lines = []
         for plane in self.planes[::2]:
             if plane in led:
@@ -151,7 +151,7 @@ class Rod:
         return lines
 
     def material(self, name, part):
-        """Cubic: E and G are independent, Poisson's ratio is zero."""
+        """Returns a material of cubic symmetry, in which E and G are independent and Poisson's ratio is zero."""
         E = part["bending_stiffness_Nm2"][0] / (self.side**4 / 12)
         # Bricks of this order do not warp: their J is the polar moment, twice I.
         GJ = part["torsional_stiffness_Nm2"]
@@ -162,7 +162,7 @@ class Rod:
                 f"*SOLID SECTION,ELSET={name},MATERIAL={name}"]
 
     def axis_of(self, moved):
-        """Places of the planes' middles, from the nodes' displacements."""
+        """Returns the positions of the planes' middles, from the nodes' displacements."""
         middles = []
         for at, plane in zip(self.s, self.planes):
             by = mix(*((0.25, moved[node]) for node in plane[:4]))
@@ -171,7 +171,7 @@ class Rod:
 
 
 def way_of_second_grip(rod):
-    """Places of its end and how the directors stand there: (place, function of a vector)."""
+    """Yields the poses of the second grip on its path: (position, function that rotates a vector)."""
     first, second = rod.scene["grippers"]
     length, direction = rod.s[-1], rod.direction
     if second["at_m"] != length or second["direction"] != direction:
@@ -200,8 +200,8 @@ def way_of_second_grip(rod):
 
 
 def loading(rod, parts, increment):
-    """Grips and loads, in one step; loads grow in its first unit of time. Forces balance to 1e-5, where
-    CalculiX's own choice is 5e-3."""
+    """Returns one step with grips and loads, which grow in its first unit of time. The tolerance of the balance
+    of forces is 1e-5; the default of CalculiX is 5e-3."""
     scene = rod.scene
     fixed = ["*BOUNDARY"] + [f"{node},1,3" for node in rod.planes[0]]
     tables = ["*AMPLITUDE,NAME=LOADS", "0.,0.", "1.,1.", "9.,1."]
@@ -239,7 +239,7 @@ def loading(rod, parts, increment):
 
 
 def displacements(lines, count):
-    """Of the nodes, at the end of the step, or None and why."""
+    """Runs CalculiX. Returns the displacements of the nodes at the end of the step and "", or None and the error."""
     with tempfile.TemporaryDirectory() as folder:
         with open(os.path.join(folder, "rod.inp"), "w", encoding="ascii") as file:
             file.write("\n".join(lines) + "\n")
@@ -255,13 +255,13 @@ def displacements(lines, count):
 
 
 def is_folded(axis, s):
-    """A brick that was turned inside out on the way has no strain by Green's measure, and stays so."""
+    """Whether a brick is inverted. Green's strain of an inverted brick may be zero, so that it stays inverted."""
     return any(abs(math.dist(a, b) / (t - r) - 1) > 0.1
                for a, b, r, t in zip(axis, axis[1:], s, s[1:]))
 
 
 def solved(rod):
-    """Places of the axis; in smaller increments of the load where larger ones fail or fold the rod."""
+    """Returns the positions of the axis. Increments of the load are reduced if larger ones fail or fold the rod."""
     lines, parts = rod.mesh()
     for increment in INCREMENTS:
         moved, problem = displacements(lines + loading(rod, parts, increment), len(rod.nodes))

@@ -27,7 +27,7 @@ SHARE = 0.1  # of a number, by which it may differ where processors round otherw
 
 
 def cards(dlo, programs, more):
-    """Of the simulators, as `dlo suite --format json` has them, by their names."""
+    """Runs `dlo suite` with the programs and returns the results table of each simulator, by its name."""
     with tempfile.TemporaryDirectory() as folder:
         file = os.path.join(folder, "cards.json")
         words = [word for program in programs for word in ("--with", program)]
@@ -39,14 +39,14 @@ def cards(dlo, programs, more):
 
 
 def order_words(card):
-    """Median of the scenes that have an error, and the smallest one."""
+    """Returns the median order of convergence of scenes with an error above SMALL, and the smallest order."""
     orders = [scene["order"] for scene in card["scenes"]
               if scene["order"] is not None and scene["runs"][-1]["rms_over_length"] > SMALL]
     return f"{statistics.median(orders):.1f} ({min(orders):.1f})" if orders else "-"
 
 
 def causes_words(card):
-    """Each once, with the range of its factor and the number of scenes."""
+    """Returns each cause once, with the range of its factor and the number of scenes."""
     found = {}
     for scene in card["scenes"]:
         for cause in scene["causes"]:
@@ -66,19 +66,19 @@ def row(card):
 
 
 def column(card):
-    """By classes."""
+    """Returns the largest error at the largest N of each class, as text."""
     errors = {one["class"]: one["largest_rms_over_length"][-1] for one in card["classes"]}
     return {name: "-" if error is None else f"{error:.1e}" for name, error in errors.items()}
 
 
 def last_digit(number):
-    """What one in it is."""
+    """Returns the value of one unit in the last digit of a number that is given as text."""
     mantissa, _, exponent = number.partition("e")
     return 10.0 ** (int(exponent or 0) - len(mantissa.partition(".")[2]))
 
 
 def same(ours, theirs):
-    """Texts whose numbers with a point are the same but for one in their last digit, or a tenth."""
+    """Whether texts are equal, up to one unit in the last digit, or SHARE, of numbers with a point."""
     number = r"\d+\.\d+(?:e[-+]\d+)?"
     if re.sub(number, "#", ours) != re.sub(number, "#", theirs):
         return False
@@ -87,7 +87,7 @@ def same(ours, theirs):
 
 
 class Page:
-    """A page with two tables: a row and a column a simulator."""
+    """A page with two tables: one has a row, the other a column for each simulator."""
 
     def __init__(self, file):
         self.file = pathlib.Path(file)
@@ -95,7 +95,7 @@ class Page:
         self.differences = []
 
     def table(self, first):
-        """Indices of its lines and its names of columns, by the first one of these."""
+        """Returns the line indices and the column names of the table whose first column has this name."""
         begin = next(i for i, line in enumerate(self.lines) if line.startswith(f"| {first} |"))
         end = begin
         while self.lines[end].startswith("|"):

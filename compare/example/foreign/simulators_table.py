@@ -34,7 +34,7 @@ names = [program.partition("=")[0] for program in options.programs]
 
 
 def run(*words):
-    """A command's JSON. Exit status 3: a program failed, which the JSON says."""
+    """Returns the JSON of a command. Exit status 3 is accepted: a program failed, and the JSON has its error."""
     result = subprocess.run([options.dlo, *words, "--time-limit", options.time_limit, "--format", "json"],
                             capture_output=True, text=True, check=False)
     if result.returncode not in (0, 3):
@@ -43,7 +43,7 @@ def run(*words):
 
 
 def in_words(seconds):
-    """Two digits, without exponents."""
+    """Returns a time with two digits and a unit, without exponents."""
     for unit, factor in (("s", 1), ("ms", 1e-3), ("us", 1e-6)):
         if seconds >= 0.95 * factor or unit == "us":
             value = seconds / factor
@@ -69,7 +69,7 @@ def table(scene):
 
 
 def errors(scene, count):
-    """Of the program and of `chain`."""
+    """Returns the RMS errors of the first program and of `chain`, divided by the length."""
     document = run("regress", scene, "--model", "chain", "--points", str(count), *programs,
                    "--baseline", f"{scene}-{count}.baseline", "--update")
     measured = {}

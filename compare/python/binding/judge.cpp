@@ -201,8 +201,8 @@ void bind_check(py::module_& module) {
       "neither weight nor loads act, or if the shape without them was not found.",
       [](R r) { return r.judgement.significant; });
   add("deflection",
-      "Largest distance between the rod with and without weight and loads [m]; NaN where neither a "
-      "pass nor the tolerance needs it.",
+      "Largest distance between the rod with and without weight and loads [m]; NaN if it was not "
+      "computed: the shape fails and the tolerance is not a share of it.",
       [](R r) { return r.deflection_m; });
   add("reason", "Reason for the verdict, as text.", [](R r) { return r.judgement.reason; });
   add("rms", "RMS distance of the points from the rod [m].",

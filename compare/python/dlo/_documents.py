@@ -154,7 +154,7 @@ class Track(Drawn):
     """A rod while its grippers or obstacles move, frame by frame; result of track()."""
 
     arc_length = _at("arc_length_m", _array, "Arc lengths of the frames' points [m], shape (M,).")
-    time = _at("frames/*/time_s", _array, "Of the frames [s], shape (F,).")
+    time = _at("frames/*/time_s", _array, "Times of the frames [s], shape (F,).")
     points = _at("frames/*/points_m", _array, "Positions of the rod at rest [m], shape (F, M, 3).")
     gripper_forces = _at(
         "frames/*/grippers/*/force_N", _array, "Force of each gripper on the rod at rest [N], shape (F, G, 3)."
@@ -163,8 +163,8 @@ class Track(Drawn):
         "frames/*/grippers/*/torque_Nm", _array, "Torque of each gripper on the rod at rest [N m], shape (F, G, 3)."
     )
     moving_points = _moving("points_m", "Positions of the rod with inertia [m], shape (F, M, 3), with dynamic=True.")
-    moving_gripper_forces = _moving("grippers/*/force_N", "Force of each gripper on it [N], shape (F, G, 3).")
-    moving_gripper_torques = _moving("grippers/*/torque_Nm", "Torque of each gripper on it [N m], shape (F, G, 3).")
+    moving_gripper_forces = _moving("grippers/*/force_N", "Force of each gripper on the rod with inertia [N], shape (F, G, 3).")
+    moving_gripper_torques = _moving("grippers/*/torque_Nm", "Torque of each gripper on the rod with inertia [N m], shape (F, G, 3).")
 
 
 def _deviations(values: Any) -> dict[str, float]:
@@ -232,14 +232,14 @@ class Equilibria(Drawn):
 class MotionCheck(Document):
     """A recorded motion compared with its scene's rod; result of check() with motion."""
 
-    passed = _at("verdict", _passes, "Whether it is within the tolerance, 1 % of the length if none was given.")
+    passed = _at("verdict", _passes, "Whether the recording is within the tolerance, 1 % of the length if none was given.")
     reason = _at("reason", str, "Reason for the verdict, in words.")
     rms = _at("rms_m", float, "RMS distance of all points from the rod [m].")
     largest = _at("largest_m", float, "Largest distance of a point [m].")
-    time = _at("frames/*/time_s", _array, "Of the frames [s], shape (F,).")
+    time = _at("frames/*/time_s", _array, "Times of the frames [s], shape (F,).")
     errors = _at("frames/*/rms_m", _array, "RMS distance of each frame's points [m], shape (F,).")
     lag = _at("lag_s", _number, "Lag of the recording [s], if it explains much of the distance; else None.")
-    causes = _at("causes", _causes, "Candidate causes: (cause, RMS distance that it leaves [m]), the best first.")
+    causes = _at("causes", _causes, "Candidate causes, best first: (cause, RMS distance that remains with it [m]).")
 
 
 @dataclass(repr=False, eq=False)

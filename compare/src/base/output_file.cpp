@@ -132,7 +132,7 @@ void write_all(int descriptor, std::string_view text, const std::string& name) {
       pollfd wait{.fd = descriptor, .events = POLLOUT, .revents = 0};
       if (::poll(&wait, 1, -1) >= 0 || errno == EINTR) continue;
     }
-    if (errno == EPIPE) throw BrokenPipe(fmt::format("{}: nobody reads it", name));
+    if (errno == EPIPE) throw BrokenPipe(fmt::format("{}: its reader has closed it", name));
     fail_to_write_output(name, errno);
   }
 }

@@ -12,7 +12,7 @@ std::span<const NamedPart> budget_parts() {
       {"bookkeeping", "the bookkeeping", &Budget::bookkeeping},
       {"discretisation", "discretisation", &Budget::discretisation},
       {"stretch", "stretch", &Budget::stretch},
-      {"contact", "obstacles that give way", &Budget::contact},
+      {"contact", "compliance of obstacles", &Budget::contact},
       {"not at rest", "not being at rest", &Budget::not_at_rest},
       {"interaction", "law and bookkeeping together", &Budget::interaction}};
   return parts;

@@ -151,7 +151,8 @@ class ChainFinder {
     segment.end = i + 1 < bodies.size() ? place_in(bodies[i + 1], bodies[i]) : last_end(segment);
     constexpr double shortest = 1e-9;
     if (!(segment.length() > shortest)) {
-      fail(segment, "is no longer than a point: the next joint is at its own (allowed: apart)");
+      fail(segment,
+           "has no length: the next joint is at the same position (allowed: another position)");
     }
     chain_.length += segment.length();
     chain_.segments.push_back(segment);
@@ -199,7 +200,9 @@ class ChainFinder {
     }
     if (off_middle_ > 1e-2) {
       chain_.notes.push_back(fmt::format(
-          "mass is spread evenly, and was {:.2g} segments off the segments' middles", off_middle_));
+          "the mass of each segment is distributed uniformly; in the model its centre is up to "
+          "{:.2g} segment lengths off the middle",
+          off_middle_));
     }
   }
 

@@ -76,7 +76,7 @@ class HoldFinder {
         hold.direction = tangent(0);
         hold.words = "the first body has a joint with a spring";
         notes.push_back(fmt::format(
-            "the spring of the first joint, {:.4g} times the others', is taken for a clamp there",
+            "the spring of the first joint, {:.4g} times the others', is treated as a clamp",
             stiffness / chain_.spring));
       }
     }
@@ -223,7 +223,7 @@ class HoldFinder {
     for (const MjcfHold& other : holds_) {
       if (std::abs(other.at - hold.at) < 1e-9 * chain_.length) {
         constraint.fail(
-            fmt::format("holds the cable where it is held already: {} (allowed: "
+            fmt::format("constrains the cable where it is already constrained: {} (allowed: "
                         "one of the two)",
                         other.words));
       }

@@ -39,7 +39,7 @@ Options read_options(const MjcfAttributes& attributes) {
         return flag.choice(name, {"enable", "disable"}) == 1;
       };
       for (const char* name : {"passive", "spring"}) {
-        if (is_off(name)) flag.fail(name, "takes the springs away (allowed: enable)");
+        if (is_off(name)) flag.fail(name, "disables the springs (allowed: enable)");
       }
       if (is_off("gravity")) options.gravity.setZero();
       if (is_off("equality") || is_off("constraint")) options.equality = false;

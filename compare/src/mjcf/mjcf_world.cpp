@@ -99,7 +99,7 @@ class WorldReader {
     body.parent = around.body;
     body.node = node.element;
     body.pose = world_.bodies[around.body].pose * around.at * node.pose();
-    MjcfNode{attributes_, node.element}.require_zero("gravcomp", "takes a part of the weight away");
+    MjcfNode{attributes_, node.element}.require_zero("gravcomp", "removes part of the weight");
     const std::size_t index = world_.bodies.size();
     world_.bodies.push_back(std::move(body));
     const std::string childclass =

@@ -171,10 +171,11 @@ class Tracker {
     frame.released_bound = passage.released_bound;
     if (passage.kept) return true;
     if (frame.released < -frame.released_bound) {
-      return stop(frame.time,
-                  fmt::format("the solver left its branch for a shape that is {:.3g} J higher than "
-                              "the work done allows; a higher frame rate may keep the branch",
-                              -frame.released));
+      return stop(
+          frame.time,
+          fmt::format("the solver left its branch: the energy of the shape is {:.3g} J higher than "
+                      "the work allows; a higher frame rate may keep the branch",
+                      -frame.released));
     }
     if (branch_.balances() && !(frame.released > frame.released_bound)) return true;
     TrackEvent event;
@@ -200,7 +201,7 @@ class Tracker {
 
   void add_force(const Moment& now, TrackFrame& frame) {
     ForceTrackSummary& summary = result_.force;
-    if (options_.force == ForceBeside::absent) summary.none = "not asked for";
+    if (options_.force == ForceBeside::absent) summary.none = "not requested";
     if (!summary.none.empty()) return;
     const double steps = options_.rates.steps / options_.rates.frames;
     summary.steps_per_frame = std::max(1L, std::lround(steps));
@@ -210,7 +211,7 @@ class Tracker {
           const Obstacle& obstacle = scene_.obstacles[i];
           if (obstacle.trajectory.empty() || obstacle.body.is_half_space()) continue;
           summary.none = fmt::format(
-              "obstacle {} moves and is no plane, which the force model cannot move", i + 1);
+              "obstacle {} moves and is not a plane (the force model moves planes only)", i + 1);
           return;
         }
         force_.emplace(now.scene, now.rod, branch_.obstacles(), options_.solve);

@@ -67,7 +67,7 @@ class VtkReader {
         if (word == "POINT_DATA") read_point_data(points);
         break;
       } else if (shape_number(word)) {
-        fail(fmt::format("{} where a keyword such as LINES should be", quoted_piece(word)));
+        fail(fmt::format("{} in place of a keyword such as LINES", quoted_piece(word)));
       }
     }
     if (points.points.empty()) fail("no POINTS");
@@ -115,7 +115,7 @@ class VtkReader {
                        format == "BINARY" ? "BINARY" : quoted_piece(format)));
     }
     if (const std::string_view word = next(); word != "DATASET") {
-      fail(fmt::format("{} where DATASET should be", quoted_piece(word)));
+      fail(fmt::format("{} in place of DATASET", quoted_piece(word)));
     }
     if (const std::string_view kind = next(); kind != "POLYDATA") {
       fail(fmt::format("DATASET {} (allowed: POLYDATA)", quoted_piece(kind)));
@@ -219,7 +219,7 @@ class VtkReader {
       if (i > 0 && begin[i] < begin[i - 1]) fail("OFFSETS: must not fall");
     }
     if (const std::string_view word = next(); word != "CONNECTIVITY") {
-      fail(fmt::format("{} where CONNECTIVITY should be", quoted_piece(word)));
+      fail(fmt::format("{} in place of CONNECTIVITY", quoted_piece(word)));
     }
     next();  // type
     std::vector<std::size_t> indices;

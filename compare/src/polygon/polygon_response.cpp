@@ -50,11 +50,11 @@ std::optional<Discretisation> hooke_polygon(const Scene& scene, int points) {
 std::string why_no_polygon(const Scene& scene) {
   const auto holds_frame = [](const Gripper& gripper) { return gripper.frame.has_value(); };
   const auto frames = std::ranges::count_if(scene.grippers, holds_frame);
-  if (frames > 1) return "the polygon that answers has no twist";
-  if (scene.naturally_bent()) return "the polygon that answers is intrinsically straight";
-  if (scene.has_two_stiffnesses()) return "the polygon that answers is round";
-  if (scene.has_couples()) return "the polygon that answers takes no couples";
-  if (!scene.sections.empty()) return "the polygon that answers is of one section";
+  if (frames > 1) return "the polygon of the response has no twist";
+  if (scene.naturally_bent()) return "the polygon of the response is intrinsically straight";
+  if (scene.has_two_stiffnesses()) return "the polygon of the response is round";
+  if (scene.has_couples()) return "the polygon of the response has no couples";
+  if (!scene.sections.empty()) return "the polygon of the response has one section";
   return {};
 }
 

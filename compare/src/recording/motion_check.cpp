@@ -204,7 +204,7 @@ class CauseSearch {
 
  private:
   static std::string offset_words(const MotionShift& shift) {
-    return fmt::format("all of it is displaced by [{:.3g}, {:.3g}, {:.3g}] mm",
+    return fmt::format("the whole recording is displaced by [{:.3g}, {:.3g}, {:.3g}] mm",
                        shift.offset.x() * 1e3, shift.offset.y() * 1e3, shift.offset.z() * 1e3);
   }
   void add(MotionCause::Kind kind, std::string words, double left) {

@@ -161,7 +161,7 @@ std::string not_identified(const MotionMisfit& misfit, const LeastSquares& neare
   }
   if (!nearest.converged) return "the least squares did not converge";
   if (!fit.stiffness.identified) {
-    return fmt::format("stiffnesses of {:.3g} to {:.3g} m^4/s^2 are as near to the recording",
+    return fmt::format("stiffnesses of {:.3g} to {:.3g} m^4/s^2 fit the recording equally well",
                        fit.stiffness.low, fit.stiffness.high);
   }
   return "";

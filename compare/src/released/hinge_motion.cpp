@@ -247,7 +247,7 @@ std::vector<Eigen::Matrix3Xd> hinge_motion(const ReleasedRod& rod, int segments,
                         options.time_limit, times[frames.size() - 1]));
       }
       if (hinges.step(interval / static_cast<double>(steps))) continue;
-      throw ConvergenceError(fmt::format("{}: a moving chain of {} hinges broke after {:g} s",
+      throw ConvergenceError(fmt::format("{}: a moving chain of {} hinges diverged after {:g} s",
                                          rod.scene.file, segments, times[frames.size() - 1]));
     }
     frames.push_back(hinges.points());

@@ -138,7 +138,7 @@ Neglected neglected_twist(const Scene& scene, const Plan& plan) {
     ForceModelSettings hooke = scene.force_model;
     hooke.law = BendingLaw::hooke;
     return {"twist", takes_twist(scene, hooke) ? "chain, force with the law paper" : "chain, force",
-            unbounded, "the grippers hold it"};
+            unbounded, "the grippers hold the rod's frame"};
   }
   if (!scene.has_material_directors()) {
     return {"twist", "all", 0, "none in a round, naturally straight rod free to twist"};
@@ -232,9 +232,9 @@ void bound_by_response(const Scene& scene, const energy_model::Equilibrium& rod,
   if (has_axial_stiffness(scene)) {
     const double EA = scene.axial_stiffness();
     bounds.stretch.bound_m = bound_of_response(response.stretch(EA).moved_m, scene.length);
-    bounds.stretch.why = "tension over EA, as the shape answers it";
+    bounds.stretch.why = "response to the axial strain, tension over EA";
     bounds.shear.bound_m = bound_of_response(response.shear(0.3 * EA), scene.length);
-    bounds.shear.why = "force across over kGA, kG >= 0.3 E";
+    bounds.shear.why = "response to shear, transverse force over kGA, kG >= 0.3 E";
   } else {
     for (Neglected* item : {&bounds.stretch, &bounds.shear}) {
       item->bound_m = unbounded;
@@ -275,7 +275,8 @@ void bound_by_shape(const Scene& scene, const PlanOptions& options, const Looked
   } else if (const std::string none = why_no_polygon(scene); !none.empty()) {
     items.bounds.set_unbounded(none);
   } else if (!fine) {
-    items.bounds.set_unbounded("the grips lie closer than any polygon looked at");
+    items.bounds.set_unbounded(
+        "the grips are closer together than the points of the finest polygon tried");
   } else {
     bound_by_response(scene, *rod, *fine, items.bounds);
     plan.points = points_for_target(scene, *rod, options.target, time);

@@ -159,20 +159,24 @@ std::vector<HardCase> hard_rods() {
   cases.push_back(make("c_c = AE", "physical stretch stiffness: the stiffest segments for the rod",
                        horizontal(2), ForceModelSettings{.points = 16}));
   cases.push_back(
-      make("Gamma = 1e-6", "next to no load; starts bent to half a circle", horizontal(1e-6)));
+      make("Gamma = 1e-6", "almost no load; starts as a half circle", horizontal(1e-6)));
   cases.back().start = arc(cases.back(), pi);
   cases.push_back(
       make("Gamma = 1e3", "a rope: bending matters at the clamp only", horizontal(1e3)));
   cases.push_back(make("Gamma = 1e5", "all bending in one joint", horizontal(1e5)));
   const Eigen::Vector3d up(0, 1, 0);
-  cases.push_back(make("upright, 3 % below buckling", "stands, barely; starts bent",
+  cases.push_back(make("upright, 3 % below buckling",
+                       "the upright shape is just stable; starts bent",
                        steel_rod(0.97 * self_buckling, up)));
   cases.back().start = arc(cases.back(), pi / 8);
-  cases.push_back(make("upright, 3 % above buckling", "falls, barely; starts upright, balanced",
+  cases.push_back(make("upright, 3 % above buckling",
+                       "the upright shape is just unstable; starts there",
                        steel_rod(1.03 * self_buckling, up)));
   cases.push_back(make("N = 5", "as few points as the paper allows", horizontal(2), 5));
-  cases.push_back(make("N = 200", "modes apart by a factor of 1e9", horizontal(2), 200));
-  cases.push_back(make("N = 1000", "modes apart by a factor of 1e12", horizontal(2), 1000));
+  cases.push_back(make("N = 200", "largest eigenvalue of the stiffness 1e9 times the smallest",
+                       horizontal(2), 200));
+  cases.push_back(make("N = 1000", "largest eigenvalue of the stiffness 1e12 times the smallest",
+                       horizontal(2), 1000));
 
   cases.push_back(unequal_segments());
   cases.push_back(papers_rod());
@@ -200,7 +204,7 @@ std::vector<HardCase> hard_surroundings() {
                          .turn = 4 * pi * seconds};
 
   cases.push_back(
-      make("wall inside the rod", "switched on where half of the rod is behind it", horizontal(2)));
+      make("wall inside the rod", "added while half of the rod is behind it", horizontal(2)));
   HardCase& wall = cases.back();
   wall.start = rest_shape(wall);
   const double height = wall.start(1, 8);
@@ -230,7 +234,7 @@ std::vector<HardCase> torn_rods() {
 
   HardCase refused = stretched;
   refused.name = "pulled too far";
-  refused.what = "two grippers 20 % further apart than the rod is long: no such rod";
+  refused.what = "two grippers 20 % further apart than the rod is long: no shape exists";
   scene.grippers.back().position.x() = apart;
   try {
     (void)discretise(scene, settings_for(scene));

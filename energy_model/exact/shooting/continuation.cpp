@@ -281,9 +281,9 @@ SpanEquilibrium follow_loads(const RodSpan& span, const SpanEquilibrium& unloade
   Continuation continuation(family, unloaded, tolerance, deadline);
   SpanEquilibrium result = continuation.run();
   if (!result.converged && !deadline.passed()) {
-    result.message = "the equilibrium that begins with the dead loads ends at " +
+    result.message = "the continuation from the equilibrium under the dead loads ends at " +
                      std::to_string(continuation.reached()) +
-                     " of those without a potential: others are not looked for";
+                     " of the loads without a potential: no other equilibrium is searched for";
   }
   return result;
 }

@@ -336,7 +336,7 @@ SpanSearchResult scan_tip(const RodSpan& span, double tolerance, const Deadline&
   }
   result.complete = !shooter.out_of_time;
   if (shooter.failures > 0 || shooter.shots > most_shots) {
-    result.not_searched = "some of the tip's angles could not be shot from";
+    result.not_searched = "some shots from the tip failed";
   }
   if (result.found.empty()) {
     result.found.emplace_back();

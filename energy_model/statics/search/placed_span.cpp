@@ -137,7 +137,7 @@ class PolygonFields {
 void add_polygon_minima(const PlacedSpan& placed, const Problem& problem, SpanOptions options,
                         SpanWorkspace& workspace, Found& found) {
   if (!problem.obstacles.empty()) {
-    note_omitted(options.log, "minima of coarse polygons, which know no obstacles");
+    note_omitted(options.log, "minima of coarse polygons, which ignore obstacles");
     return;
   }
   const PolygonFields fields(problem, placed, options.deadline);

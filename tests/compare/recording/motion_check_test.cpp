@@ -113,13 +113,13 @@ TEST(MotionCheck, FindsWhereARecordingIsDisplaced) {
   EXPECT_NEAR(check.errors.largest_m, by.norm(), 3 * close_to_rod);
   EXPECT_TRUE(std::isnan(check.lag));
   ASSERT_EQ(check.causes.size(), 1U);
-  EXPECT_EQ(check.causes.front().words, "all of it is displaced by [6, -2, 3] mm");
+  EXPECT_EQ(check.causes.front().words, "the whole recording is displaced by [6, -2, 3] mm");
   MarkerMotion late = at_rest(scene, uneven_times(0.8, 20), five, 0.02);
   displace(late, by);
   const MotionCheck both = check_motion(scene, late);
   ASSERT_FALSE(both.causes.empty());
   EXPECT_EQ(both.causes.front().words,
-            "all of it is displaced by [6, -2, 3] mm, and it is 20 ms late");
+            "the whole recording is displaced by [6, -2, 3] mm, and it is 20 ms late");
 }
 
 TEST(MotionCheck, SaysThatInertiaIsMissing) {

@@ -163,7 +163,7 @@ TEST(ShapeFile, RefusesMalformedVtkWithFileAndLine) {
       {head + "POINTS -3 float\n", {"mine:5: number of points \"-3\""}},
       {head + "POINTS 3 float\n0 0 0\n1 0", {"mine:7: the file ends in point 2 of 3"}},
       {head + "POINTS 2 float\n0 0 0\n1 0 x\n", {"mine:7: point 2: \"x\" is not a number"}},
-      {head + "POINTS 2 float\n0 0 0\n1 0 0\n5 6 7\n", {"mine:8: \"5\" where a keyword"}},
+      {head + "POINTS 2 float\n0 0 0\n1 0 0\n5 6 7\n", {"mine:8: \"5\" in place of a keyword"}},
       {head + "POINTS 2 float\n0 0 0\n1 0 nan\n", {"mine:7: point 2: z = nan"}},
       {head + "LINES 1 3\n2 0 1\n", {"LINES before POINTS"}},
       {points + "LINES 1 4\n3 0 1 3\n", {"mine:9: LINES: index \"3\"", "0 to 2"}},

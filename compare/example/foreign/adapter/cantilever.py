@@ -43,7 +43,7 @@ def read(file, points):
 
 
 def straight(rod):
-    """Its nodes as it starts."""
+    """Returns the nodes of the straight initial shape."""
     return [[o + i * rod.h * d for o, d in zip(rod.origin, rod.direction)] for i in range(rod.n + 1)]
 
 

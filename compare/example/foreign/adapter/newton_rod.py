@@ -20,7 +20,7 @@ if g == 0:
     cantilever.refuse("no gravity")
 builder = newton.ModelBuilder(up_axis=newton.Axis.Y, gravity=-g)
 if rod.gravity[1] != -g:
-    cantilever.refuse("gravity but along -y")
+    cantilever.refuse("gravity other than along -y")
 nodes = [warp.vec3(*node) for node in cantilever.straight(rod)]
 turn = warp.quat_between_vectors(warp.vec3(0.0, 0.0, 1.0), warp.vec3(*rod.direction))
 radius = 0.1 * rod.h

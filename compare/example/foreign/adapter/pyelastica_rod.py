@@ -29,7 +29,7 @@ simulator.constrain(body).using(elastica.OneEndFixedBC, constrained_position_idx
 simulator.add_forcing_to(body).using(elastica.GravityForces, acc_gravity=numpy.array(rod.gravity))
 for node, force in rod.loads:
     if node != rod.n:
-        cantilever.refuse("loads but at the end")
+        cantilever.refuse("loads other than at the end")
     simulator.add_forcing_to(body).using(
         elastica.EndpointForces, numpy.zeros(3), numpy.array(force), ramp_up_time=0.1)
 step = 0.2 * rod.h * (rod.m / rod.EA) ** 0.5

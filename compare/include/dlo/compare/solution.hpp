@@ -95,10 +95,11 @@ template <>
 struct Choices<StretchDecision> {
   /// All values, in the order of the enumeration.
   static constexpr Choice<StretchDecision> all[] = {
-      {StretchDecision::given, "given", "the scene says it"},
-      {StretchDecision::counted, "counted", "it matters"},
-      {StretchDecision::below_target, "below_target", "it does not matter"},
-      {StretchDecision::not_modelled, "not_modelled", "it matters, the model has none"}};
+      {StretchDecision::given, "given", "the scene states it"},
+      {StretchDecision::counted, "counted", "stretch exceeds the target error"},
+      {StretchDecision::below_target, "below_target", "stretch is below the target error"},
+      {StretchDecision::not_modelled, "not_modelled",
+       "stretch matters, but the model neglects it"}};
 };
 
 /// Twist and writhe of an interval of the rod between clamps that hold frames, in turns. The writhe
