@@ -21,9 +21,9 @@ struct BalanceDefects {
   /// |sum of all torques about the rod's begin| over largest force times l plus largest torque, at
   /// least EI/l.
   double torque = 0;
-  /// Largest |EI t x t' + GJ tau t - torque of all that lies beyond|, over the same. With material
-  /// directors only the components across t, with EI_1 (u1 - n1) d1 + EI_2 (u2 - n2) d2 in place of
-  /// EI t x t' + GJ tau t.
+  /// Largest |EI t x t' + GJ tau t - torque of all that lies beyond|, divided by the scale of
+  /// `torque`. With material directors only the components across t, with
+  /// EI_1 (u1 - n1) d1 + EI_2 (u2 - n2) d2 in place of EI t x t' + GJ tau t.
   double moment = 0;
   double grips = 0;     ///< largest error of positions over l, and of unit tangents
   double integral = 0;  ///< largest |r(b) - r(a) - int t ds| over l, and ||t| - 1|

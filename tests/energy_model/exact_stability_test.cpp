@@ -21,11 +21,8 @@ bool says(const Equilibrium& equilibrium, const std::string& words) {
 }
 
 TEST(SecondVariation, OfAnUnloadedRodIsThatOfTheLinearTheory) {
-  // The modes are sin((k + 1/2) pi s). The smallest quotient Q / int (
-  // eta'
-  // ^2 +
-  // eta
-  // ^2) is q / (q + 1) with q = (pi / 2)^2.
+  // The modes are sin((k + 1/2) pi s). The smallest quotient Q / int (|eta'|^2 + |eta|^2) is
+  // q / (q + 1) with q = (pi / 2)^2.
   const double q = pi * pi / 4;
   EXPECT_NEAR(solve_exact(heavy_cantilever(0, 0)).smallest_eigenvalue, q / (q + 1), 1e-7);
   // A clamp inside the rod leaves two cantilevers, of which the longer one has the smaller

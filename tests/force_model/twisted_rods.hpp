@@ -11,7 +11,7 @@ namespace dlo::test {
 /// A rod between two clamps that hold the middles of its end segments and the frame, the later one
 /// turned by `turn` about its direction from where d1 would be if the rod were straight.
 struct TwistedRod {
-  double length = 1;      ///< between the clamps [m]
+  double length = 1;      ///< length between the clamps [m]
   double EI = 1;          ///< [N m^2]
   double GJ = 0.8;        ///< [N m^2]
   double c_c = 1e4;       ///< [N]

@@ -9,9 +9,9 @@ namespace dlo::fuzz {
 /// @throws std::logic_error if the reader breaks this; other exceptions of the reader pass
 void scene(const std::string& text);
 void model(const std::string& text);       ///< MJCF
-void parameters(const std::string& text);  ///< of the force model
-void baseline(const std::string& text);    ///< what is read is written, and read again the same
-void shape(const std::string& text);       ///< of any kind, in metres and in millimetres
+void parameters(const std::string& text);  ///< parameters of the force model
+void baseline(const std::string& text);    ///< a baseline; written and read again it is unchanged
+void shape(const std::string& text);       ///< a shape of any format, in metres and in millimetres
 void vary(const std::string& text);        ///< FIELD=VALUES of a sweep, and the scenes it gives
 
 }  // namespace dlo::fuzz

@@ -55,8 +55,8 @@ class FollowedState {
     return reached != nullptr ? reached->mean_square : std::numeric_limits<double>::infinity();
   }
 
-  /// Returns the smallest eigenvalue of the second variation; NaN beyond the end of the
-  /// equilibrium, or if the solver did not compute it.
+  /// Returns the smallest eigenvalue of the second variation; NaN beyond the modulus at which the
+  /// equilibrium ceases to exist, or if the solver did not compute it.
   [[nodiscard]] double curvature(double log_ratio) {
     if (!std::isfinite((*this)(log_ratio))) return NAN;
     return known_.at(log_ratio).state.smallest_eigenvalue;

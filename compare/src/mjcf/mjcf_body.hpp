@@ -18,7 +18,7 @@ struct MjcfJoint {
   Eigen::Vector3d axis = Eigen::Vector3d::UnitZ();  ///< axis of a hinge in the body, unit vector
   double stiffness = 0;                             ///< [N m/rad]
   bool is_limited = false;                          ///< whether it has a range
-  pugi::xml_node node;                              ///< for messages
+  pugi::xml_node node;                              ///< XML element, for messages
 
   /// Whether two segments can rotate relative to each other at the joint.
   [[nodiscard]] bool rotates() const { return type == Type::hinge || type == Type::ball; }
@@ -38,14 +38,14 @@ struct MjcfPlugin {
 struct MjcfBody {
   std::string name;
   std::size_t parent = 0;
-  MjcfPose pose = MjcfPose::Identity();  ///< in the world
+  MjcfPose pose = MjcfPose::Identity();  ///< pose in the world
   bool moves = false;                    ///< whether it, or a body that contains it, has a joint
   std::vector<MjcfJoint> joints;
   std::vector<MjcfGeom> geoms;
   std::optional<MjcfPlugin> plugin;
   double mass = 0;                                   ///< mass of its inertial or its geoms [kg]
-  Eigen::Vector3d centre = Eigen::Vector3d::Zero();  ///< centre of that mass, in the body [m]
-  pugi::xml_node node;                               ///< for messages
+  Eigen::Vector3d centre = Eigen::Vector3d::Zero();  ///< centre of mass, in the body [m]
+  pugi::xml_node node;                               ///< XML element, for messages
 };
 
 /// Reads a joint. @param at  pose of the surrounding frames, in the body

@@ -12,9 +12,10 @@ namespace dlo::compare {
 /// A rigid body of a cable, from its joint to the next one.
 struct MjcfSegment {
   std::size_t body = 0;
-  Eigen::Vector3d begin = Eigen::Vector3d::Zero();  ///< in the body [m]
-  Eigen::Vector3d end = Eigen::Vector3d::Zero();    ///< in the body [m]
-  double at = 0;                                    ///< arc length of its start [m]
+  /// Begin of the segment, in the body's frame [m].
+  Eigen::Vector3d begin = Eigen::Vector3d::Zero();
+  Eigen::Vector3d end = Eigen::Vector3d::Zero();  ///< end of the segment, in the body's frame [m]
+  double at = 0;                                  ///< arc length of its start [m]
 
   [[nodiscard]] double length() const { return (end - begin).norm(); }
   [[nodiscard]] Eigen::Vector3d direction() const { return (end - begin).normalized(); }

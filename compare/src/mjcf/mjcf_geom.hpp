@@ -11,12 +11,12 @@ namespace dlo::compare {
 struct MjcfGeom {
   enum class Type { plane, sphere, capsule, ellipsoid, cylinder, box, other };
   Type type = Type::sphere;
-  Eigen::Vector3d size = Eigen::Vector3d::Zero();  ///< as in MJCF [m]
-  MjcfPose pose = MjcfPose::Identity();            ///< in the body
+  Eigen::Vector3d size = Eigen::Vector3d::Zero();  ///< attribute `size` as in MJCF [m]
+  MjcfPose pose = MjcfPose::Identity();            ///< pose in the body's frame
   double mass = 0;                                 ///< [kg]
   int contype = 1, conaffinity = 1;                ///< bit masks for collisions
   double friction = 1;                             ///< sliding [-]
-  pugi::xml_node node;                             ///< for messages
+  pugi::xml_node node;                             ///< XML element, for messages
 
   /// Whether it is a capsule or a cylinder.
   [[nodiscard]] bool is_round() const { return type == Type::capsule || type == Type::cylinder; }

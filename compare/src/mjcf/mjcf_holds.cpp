@@ -15,7 +15,7 @@ using Eigen::Vector3d;
 /// Body of a constraint and the point of attachment.
 struct Attached {
   std::size_t body = 0;
-  MjcfPose frame = MjcfPose::Identity();  ///< in the body
+  MjcfPose frame = MjcfPose::Identity();  ///< frame that the constraint holds, in the body's frame
 };
 
 /// Finds the grippers of a chain.

@@ -12,7 +12,7 @@ namespace dlo::compare {
 struct MjcfSite {
   std::string name;
   std::size_t body = 0;
-  MjcfPose pose = MjcfPose::Identity();  ///< in the body
+  MjcfPose pose = MjcfPose::Identity();  ///< pose in the body's frame
 };
 
 /// All bodies of a model in MuJoCo's order, the world first; composites are expanded to bodies.
@@ -20,7 +20,7 @@ struct MjcfWorld {
   std::vector<MjcfBody> bodies;
   std::vector<MjcfSite> sites;
   pugi::xml_node composite;        ///< composite of the cable; empty if its bodies are written out
-  std::vector<std::string> notes;  ///< on ignored parts of the model
+  std::vector<std::string> notes;  ///< notes on ignored parts of the model
 };
 
 /// Reads the bodies of a model.

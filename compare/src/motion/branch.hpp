@@ -41,7 +41,7 @@ struct Moment {
 struct Passage {
   bool kept = true;  ///< it stayed on its branch: each shape is close to the one before, and the
                      ///< energy balances
-  bool smaller = false;  ///< with steps smaller than a frame
+  bool smaller = false;  ///< whether steps smaller than a frame were made
   bool stands = false;   ///< whether nothing moved
   /// If the branch was not kept: whether its end was observed, as loss of stability or as a
   /// vanishing contact force.

@@ -21,8 +21,8 @@ enum class ForceBeside { runs, absent };
 struct ForceFrame {
   double error_over_length = 0;       ///< RMS distance from the energy model's shape [-]
   std::vector<GripperLoad> grippers;  ///< force and torque of each gripper on the rod
-  Eigen::Matrix3Xd points;            ///< at the track's arc lengths, interpolated linearly [m]
-  Shape shape;                        ///< its own points [m]
+  Eigen::Matrix3Xd points;  ///< positions at the track's arc lengths, interpolated linearly [m]
+  Shape shape;              ///< points of the force model's polygon [m]
 };
 
 /// Mean and largest error over all frames.

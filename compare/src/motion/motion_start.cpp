@@ -123,7 +123,7 @@ bool are_dense(const std::set<double>& arc_lengths, double length) {
   return length - before <= widest * length;
 }
 
-/// Returns the arc lengths of the table's points.
+/// Returns the equally spaced arc lengths at which a start is tabulated.
 std::vector<double> table_arc_lengths(double length) {
   return equal_arc_lengths(length, table_points);
 }

@@ -18,10 +18,11 @@ inline constexpr int most_points_of_modes = 300;
 /// The force model's polygon at rest, with its masses and stiffness.
 struct MovingPolygon {
   Discretisation discretisation;
-  Eigen::Matrix3Xd points;         ///< at rest [m]
+  Eigen::Matrix3Xd points;         ///< positions at rest [m]
   std::vector<Eigen::Index> free;  ///< indices of the points that move
-  Eigen::VectorXd masses;          ///< masses of these points, with what hangs on them [kg]
-  Eigen::MatrixXd stiffness;       ///< their stiffness matrix; x, y, z of each in turn [N/m]
+  Eigen::VectorXd masses;          ///< masses of the points that move, with what hangs on them [kg]
+  /// Stiffness matrix of the points that move; x, y, z of each in turn [N/m].
+  Eigen::MatrixXd stiffness;
 };
 
 /// Computes the polygon at rest.

@@ -95,7 +95,7 @@ struct [[nodiscard]] MovingRun {
   /// frames [N]. The springs of a gripper that holds a horizontal rod pull against each other, so
   /// this is more than the net force.
   double average_force = 0;
-  /// Magnitude of the sum of the spring forces, averaged likewise [N].
+  /// Magnitude of the sum of the spring forces, averaged over the 1 kHz frames [N].
   double average_net_force = 0;
   double final_force = 0;      ///< average_force of the last frame alone [N]
   double final_net_force = 0;  ///< average_net_force of the last frame alone [N]

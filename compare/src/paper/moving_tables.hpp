@@ -44,9 +44,9 @@ struct MovingDistance {
 /// Rows for choices that differ from the defaults in one parameter.
 struct MovingScanEntry {
   std::string varied;           ///< the varied parameter, "nothing" for the defaults
-  MovingChoices choices;        ///< the choices of these rows
+  MovingChoices choices;        ///< parameters with which the rows were computed
   std::vector<MovingRow> rows;  ///< one per experiment
-  MovingDistance distance;      ///< agreement of these rows with the printed ones
+  MovingDistance distance;      ///< agreement of the rows with the printed ones
 };
 
 /// Tables 2 to 4, and their dependence on parameters that the paper does not print.

@@ -18,8 +18,8 @@ namespace {
 
 /// Moment of a straight rod's load about a grip, on the side of the grip where it is larger [N m].
 struct RootMoment {
-  double along = 0;  ///< with the directions of the forces and of the rod
-  double most = 0;   ///< if all forces were perpendicular to the rod
+  double along = 0;  ///< moment for the actual directions of the forces and of the rod
+  double most = 0;   ///< moment if all forces were perpendicular to the rod
 };
 
 RootMoment root_moment(const Scene& scene, const Gripper& grip, double side) {

@@ -17,7 +17,7 @@ namespace {
 struct KeyName {
   std::string words;
   std::string unit;
-  double factor = 1;  ///< of the value in `unit` over that in the document
+  double factor = 1;  ///< factor that converts the value in the document to `unit`
 };
 
 /// Returns a unit from the end of a key, such as "N s/m^2" for "N_s_per_m2".

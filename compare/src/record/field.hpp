@@ -22,9 +22,9 @@ using Numbers = std::vector<std::pair<std::string, double>>;
 
 /// Outputs that show a field; combined by |.
 enum FieldPlace : unsigned {
-  in_json = 1,    ///< by its path
-  in_csv = 2,     ///< in a column
-  in_python = 4,  ///< as an attribute
+  in_json = 1,    ///< in JSON documents, at its path
+  in_csv = 2,     ///< in CSV tables, as a column
+  in_python = 4,  ///< in Python, as an attribute
   everywhere = in_json | in_csv | in_python
 };
 
@@ -39,11 +39,11 @@ struct Field {
                    std::vector<double> (*)(const T&), Numbers (*)(const T&), Json (*)(const T&)>;
 
   std::string_view name = {};   ///< words joined by "_"
-  std::string_view unit = {};   ///< as at the end of keys; empty: a pure number, or no number
+  std::string_view unit = {};   ///< unit as it ends the key; empty: a pure number, or no number
   std::string_view words = {};  ///< description for people
   Get get = {};
   unsigned places = everywhere;  ///< combination of FieldPlace
-  std::string_view path = {};    ///< in JSON, such as "solver/wall_s"; empty: key()
+  std::string_view path = {};    ///< path in JSON, such as "solver/wall_s"; empty: key()
   /// Whether a scene has the field; null: all scenes have it.
   bool (*when)(const Scene&) = nullptr;
 

@@ -62,7 +62,7 @@ struct ReleasedMotion {
 
 /// Extrapolated limit of chains with N, 2N and 4N segments.
 struct HingeLimit {
-  std::vector<Eigen::Matrix3Xd> frames;  ///< at N + 1 equal arc lengths [m]
+  std::vector<Eigen::Matrix3Xd> frames;  ///< positions at N + 1 equal arc lengths [m]
   double error = 0;  ///< largest change of a point by the last extrapolation [m]
 };
 

@@ -87,8 +87,9 @@ Measured measure(const Alignment& alignment, const Reference& reference, double 
     const double covered = s.back() - s.front();
     const double longer = std::max(0.0, polyline_length(shape.points) - covered);
     const double past = before.front() + after.back();
-    // The points exceed the rod only by the length that the polyline has in addition. Points of a
-    // different shape with the length of the rod lie past an end as well.
+    // The part of `past` that counts as excess is at most the excess length of the polyline. The
+    // rest is the deviation of a shape whose points lie past an end although its length is that of
+    // the rod.
     const double share = past > longer ? longer / past : 1;
     result.excess_at_start_m = share * before.front();
     result.excess_at_end_m = share * after.back();

@@ -97,10 +97,12 @@ struct SceneBenchmark {
   double gamma = 0;   ///< w l^3 / (EI) [-]
   /// Model of the reference; energy if exact does not solve the scene.
   Model reference = Model::exact;
-  std::vector<BenchmarkRun> runs;        ///< static runs
-  std::vector<BenchmarkRun> tracking;    ///< tracking runs, timed per frame behind a moving gripper
-  std::vector<BenchmarkAnswer> answers;  ///< of the static runs, for 10 %, 1 %, 0.1 % and 1e-6
-  std::vector<BenchmarkAnswer> tracking_answers;  ///< of the tracking runs, for the same accuracies
+  std::vector<BenchmarkRun> runs;      ///< static runs
+  std::vector<BenchmarkRun> tracking;  ///< tracking runs, timed per frame behind a moving gripper
+  /// Answers of the static runs, for errors of 10 %, 1 %, 0.1 % and 1e-6.
+  std::vector<BenchmarkAnswer> answers;
+  /// Answers of the tracking runs, for the same errors.
+  std::vector<BenchmarkAnswer> tracking_answers;
   /// Static runs: the fastest `energy` run within 1e-6 l and the fastest `force` run within 1e-3 l.
   std::optional<std::size_t> energy_at_1e6, force_at_1e3;  ///< empty if there is none
 };

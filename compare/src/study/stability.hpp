@@ -64,8 +64,9 @@ struct StabilityOptions {
   long max_steps_auto = 20'000'000;
   /// Steps of the case that starts at rest; `implicit` makes a hundredth of them.
   long steps_at_rest = 10'000'000;
-  double tolerance = 1e-3;  ///< of a pass: largest distance of a point, divided by the length [-]
-  int threads = 1;          ///< number of threads at most; 0: as many as the machine has
+  /// Largest distance of a point with which a case passes, divided by the length [-].
+  double tolerance = 1e-3;
+  int threads = 1;  ///< number of threads at most; 0: as many as the machine has
   /// Only cases whose name contains this text are run.
   std::string name_contains;
   std::vector<std::string> excluded;  ///< names of cases that are not run

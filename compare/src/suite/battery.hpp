@@ -19,7 +19,7 @@ struct ClosedForm {
 
 /// Motion of a scene: the rod is released at 0 s from the equilibrium of another scene.
 struct BatteryMotion {
-  Scene begin;       ///< the same rod with what holds it before 0 s, at rest
+  Scene begin;       ///< scene of the rod before 0 s, whose equilibrium is the initial shape
   double until = 0;  ///< end time [s], > 0
   int frames = 0;    ///< number of requested frames, at equal intervals from 0 to `until`
 

@@ -32,7 +32,7 @@ struct SceneKey {
   std::string missing;  ///< "required", or the default, for people
   std::string example;  ///< value as in a file
   std::string words;    ///< sentences; empty for tables
-  Range range;          ///< of each number, or of the number of rows or tables
+  Range range;          ///< range of each number, or of the number of rows or tables
   Dimension dimension = Dimension::number;
   std::vector<std::string> excludes;  ///< keys of the table that may not be given too
   std::vector<std::string> needs;     ///< keys of the table that have to be given too
@@ -48,7 +48,7 @@ struct SceneTable {
   std::string name;    ///< "rod.helix", "gripper"; "" for the file itself
   std::string words;   ///< sentences
   std::vector<SceneKey> keys;
-  std::vector<std::string> names;  ///< of the keys, in alphabetical order
+  std::vector<std::string> names;  ///< names of the keys, in alphabetical order
 
   /// Returns a key by its name. @throws std::out_of_range for an unknown name
   [[nodiscard]] const SceneKey& key(std::string_view name) const;

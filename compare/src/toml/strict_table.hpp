@@ -141,9 +141,10 @@ class StrictTable {
                                    Dimension dimension) const;
   /// Form of a value of several numbers.
   struct NumberForm {
-    std::vector<std::size_t> sizes;  ///< of a row; 1 is a number without brackets
-    std::optional<bool> nested;      ///< whether there are rows; empty: either
-    const char* words;               ///< for a message
+    /// Allowed numbers of values in a row; 1 is a number without brackets.
+    std::vector<std::size_t> sizes;
+    std::optional<bool> nested;  ///< whether there are rows; empty: either
+    const char* words;           ///< description of the form for a message
   };
   /// Reads rows of numbers, which become columns. The dimension is that of the first three numbers
   /// of a row; others have none.

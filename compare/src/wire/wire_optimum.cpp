@@ -228,8 +228,8 @@ std::optional<double> WireOptimum::end(double side) {
   const double farthest = side > 0 ? range.highest - values()[0] : values()[0] - range.lowest;
   constexpr double jump = 4;
   double distance = linear;
-  double before = 0;  // distance of the previous step, and the root of the deviance there
-  double reached_before = 0;
+  double before = 0;          // distance of the previous step
+  double reached_before = 0;  // root of the deviance at the previous step
   for (int i = 0; i < most_ends; ++i) {
     if (!(distance < farthest)) return std::nullopt;
     const double excess = unlikelihood(values()[0] + side * distance);

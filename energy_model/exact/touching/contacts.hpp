@@ -16,8 +16,8 @@ namespace dlo::energy_model {
 /// Position of a contact of a shape in a mesh.
 struct PlacedContact {
   ContactPart part;
-  Eigen::Index begin = 0;  ///< node; of a part that lies the first one
-  Eigen::Index end = 0;    ///< node; of a part that lies the last one
+  Eigen::Index begin = 0;  ///< node of a point contact, or first node of a contact interval
+  Eigen::Index end = 0;    ///< last node of a contact interval
   /// Index in RodContacts::nodes; none: a grip carries the force.
   std::optional<std::size_t> begin_force;
   /// Index in RodContacts::nodes for the end of a part that lies; none: a grip carries the force,

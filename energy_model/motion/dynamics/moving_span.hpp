@@ -17,8 +17,10 @@ namespace dlo::energy_model {
 /// Results of one span at one time, in SI units.
 struct SpanFrame {
   EnergyBalance energy;
-  std::vector<std::pair<std::size_t, Reaction>> grips;             ///< by index of the grip
-  std::vector<std::pair<std::size_t, Eigen::Vector3d>> obstacles;  ///< by index
+  /// Reactions, each with the index of its grip.
+  std::vector<std::pair<std::size_t, Reaction>> grips;
+  /// Forces, each with the index of its obstacle.
+  std::vector<std::pair<std::size_t, Eigen::Vector3d>> obstacles;
   PlacedShape shape;
 };
 

@@ -22,7 +22,7 @@ struct ContactLaw {
 /// Position and velocity of an obstacle at one time, along SpanDrive's axes.
 struct BodyPlace {
   Eigen::Matrix3d turn = Eigen::Matrix3d::Identity();  ///< rotation from the frame of its Body
-  Eigen::Vector3d origin = Eigen::Vector3d::Zero();    ///< origin of that frame
+  Eigen::Vector3d origin = Eigen::Vector3d::Zero();    ///< origin of the Body's frame
   Eigen::Vector3d velocity = Eigen::Vector3d::Zero();  ///< velocity of the origin
   Eigen::Vector3d spin = Eigen::Vector3d::Zero();
 
@@ -36,7 +36,7 @@ struct Touch {
   std::size_t obstacle = 0;  ///< index in the problem
   Eigen::Vector3d at = Eigen::Vector3d::Zero();
   Eigen::Vector3d normal = Eigen::Vector3d::UnitY();   ///< unit, out of the obstacle
-  Eigen::Vector3d velocity = Eigen::Vector3d::Zero();  ///< velocity of the obstacle there
+  Eigen::Vector3d velocity = Eigen::Vector3d::Zero();  ///< velocity of the obstacle at the point
   double depth = 0;                                    ///< > 0
   std::size_t piece = 0;                               ///< element in a ContactGrid
   Eigen::Index point = 0;                              ///< index of the point within the element

@@ -30,14 +30,15 @@ struct AcrossDirector {
 /// Motion that grips and obstacles prescribe for a span at one time. Own units; components along
 /// axes that rotate with the clamp at the start (the span's frame if there is none).
 struct SpanDrive {
-  Eigen::Matrix3d turn = Eigen::Matrix3d::Identity();   ///< from the span's frame to these axes
+  /// Rotation from the span's frame to the axes of this struct.
+  Eigen::Matrix3d turn = Eigen::Matrix3d::Identity();
   Eigen::Vector3d spin = Eigen::Vector3d::Zero();       ///< angular velocity of the axes
   Eigen::Vector3d spin_rate = Eigen::Vector3d::Zero();  ///< angular acceleration of the axes
   /// Positions of the anchor and of Span::holds relative to the anchor's initial position.
   std::vector<Moving> grips;
   /// Directions to which directors of the last cross-section stay normal, if a clamp holds it.
   std::vector<AcrossDirector> across_end;
-  Eigen::Vector3d end_spin = Eigen::Vector3d::Zero();  ///< angular velocity of that clamp
+  Eigen::Vector3d end_spin = Eigen::Vector3d::Zero();  ///< angular velocity of the clamp at the end
   std::vector<BodyPlace> obstacles;                    ///< the problem's obstacles, by index
 };
 

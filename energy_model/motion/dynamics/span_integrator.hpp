@@ -142,7 +142,7 @@ class SpanIntegrator {
   Eigen::MatrixXd mass_;
   Eigen::MatrixXd jacobian_;
   std::vector<Factor> factors_;
-  Factor of_points_;  // factor of the last step with its own matrices
+  Factor of_points_;  // factor of Newton's matrix with the mass matrices of the last step
   Stages last_;
   double newton_enough_;      // Newton correction at which a step counts as solved
   double next_ = first_step;  // size of the next step

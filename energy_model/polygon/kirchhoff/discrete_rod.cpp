@@ -86,7 +86,7 @@ struct RodModel {
 
 /// A Newton step.
 struct RodStep {
-  Eigen::Matrix3Xd spins;  ///< by frame
+  Eigen::Matrix3Xd spins;  ///< spins of the frames, one per column
   double largest = 0;      ///< largest spin of an interval's frame [rad]
   double slope = 0;        ///< derivative of the augmented energy along the step, <= 0
 };

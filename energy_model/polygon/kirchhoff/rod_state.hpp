@@ -14,7 +14,7 @@ using NaturalStrain = std::function<Eigen::Vector3d(double s)>;
 /// Section of the rod, in units of the rod.
 struct RodSection {
   double bending = 1;  ///< b: EI over bending_unit(); about d1 if bending_2 is given
-  double torsion = 0;  ///< c: GJ over the same unit; 0: twist is free and has no energy
+  double torsion = 0;  ///< c: GJ over bending_unit(); 0: twist is free and has no energy
   Eigen::Vector3d weight = Eigen::Vector3d::Zero();  ///< w, including line loads, at s = 0
   std::optional<double> bending_2 = std::nullopt;    ///< stiffness about d2; none: as about d1
   Eigen::Vector3d slope = Eigen::Vector3d::Zero();   ///< derivative w' of the weight

@@ -101,8 +101,9 @@ struct Span {
   /// Natural strains about d1, d2 and the tangent of a frame that has first_d1() at the start; only
   /// about d1 if planar. Given for all rods with material directors, zero if the rod is straight.
   NaturalStrains natural;
-  /// EI about d1 and d2 of that frame, and GJ of a rod with material directors, divided by the unit
-  /// of EI, outside `parts`. Without material directors both EI are equal.
+  /// EI about d1 and d2, and GJ, of a rod with material directors, divided by the unit of EI,
+  /// outside `parts`. The directors are those of `natural`. Without material directors both EI are
+  /// equal.
   Eigen::Vector3d stiffness = {1, 1, 0};
   /// d1 at a clamped start that is determined by the principal axes of the section; none: d1().
   std::optional<Eigen::Vector3d> principal_d1;

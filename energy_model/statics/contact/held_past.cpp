@@ -30,7 +30,7 @@ struct Reach {
   double from_s = 0;       ///< arc length of the grip at which a path past a body begins
   double length = 0;       ///< length of this part of the rod
   double sense = 1;        ///< 1 if arc lengths increase along the path, else -1
-  Eigen::Vector3d from;    ///< position of that grip
+  Eigen::Vector3d from;    ///< position of the grip at from_s
   bool is_closed = false;  ///< whether another grip is at the other end
   Eigen::Vector3d to;      ///< position of the other grip, if there is one
 };

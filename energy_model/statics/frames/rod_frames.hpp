@@ -54,7 +54,8 @@ class RodFrames {
     Eigen::MatrixX4d q;          ///< unit quaternions w, x, y, z
     Eigen::MatrixX3d u;          ///< strains
     Eigen::MatrixX3d d1, d2, t;  ///< directors
-    /// Quadrature weight times int_s^end t over the rest of the element, divided by its length.
+    /// Integral of t from each node to the end of its element, times the node's quadrature weight
+    /// on [0, 1], divided by the length of the element.
     Eigen::MatrixX3d tails;
     std::vector<Eigen::Quaterniond> panel_ends;  ///< frames at panel ends
     /// Derivatives by x of the rotation of the end's frame, 3 x unknowns, from the last

@@ -55,8 +55,8 @@ struct Factors {
   std::ptrdiff_t next, beside;
 };
 
-/// Computes a tile of A B, or subtracts it from the result: `registers` registers of rows from row
-/// i, and `width` columns from column j.
+/// Computes a tile of the product A B, or subtracts it from the result. The tile begins at row i
+/// and column j; it has `width` columns and as many rows as fit into `registers` vector registers.
 template <int registers, int width, bool subtracts = false>
 inline void multiply_tile(const ConstColumns& a, const Factors& b, const Columns& result,
                           std::ptrdiff_t i, std::ptrdiff_t j) {

@@ -110,7 +110,7 @@ struct NewtonBuffers {
   Pool<SpanPoint> points;
   BroydenSteps broyden;
   std::shared_ptr<SpanPoint> here;  ///< point of the solution
-  Eigen::VectorXd gradient;         ///< gradient of E - mu . c there
+  Eigen::VectorXd gradient;         ///< gradient of E - mu . c at `here`
   Eigen::VectorXd right, step, first_step;
   Eigen::VectorXd trial_x, trial_multipliers, lowest_mode;
   Eigen::MatrixXd near_null_modes;

@@ -154,7 +154,8 @@ class FreeBoundaryNewton {
   SpanSolution& solution_;
   const Deadline& deadline_;
   SpanWorkspace& workspace_;
-  std::shared_ptr<NewtonFactor> factor_;  // the last one, for nearly the same ends
+  // Factor of the previous step, reused for nearly the same ends
+  std::shared_ptr<NewtonFactor> factor_;
   std::vector<FreeBoundary> ends_;
   Eigen::VectorXd residual_;
   Eigen::MatrixXd jacobian_;  // derivatives of the residual by the ends

@@ -67,8 +67,8 @@ inline constexpr const char* no_equilibrium_of_class =
 [[nodiscard]] std::optional<Writhe> writhe_of(const SpanSolution& solution);
 
 /// Whether the frames along an equilibrium belong to the homotopy class that clamps with these
-/// turns prescribe; sets solution.turns_lost. Always true for a round straight rod, which is
-/// twisted to its turns, and if the turns are unknown.
+/// turns prescribe; sets solution.turns_lost. Always true for a round straight rod, whose search
+/// prescribes the turns itself, and if the turns are unknown.
 [[nodiscard]] bool is_of_class(SpanSolution& solution, const std::optional<double>& turns);
 
 /// Returns a list of one solution. A braced list would copy it.

@@ -69,7 +69,8 @@ struct ContactSeries {
   };
   Eigen::Index clearance = -1;
   std::vector<Slope> slopes;
-  bool held_at_begin = false, held_at_end = false;  ///< whether a grip is there
+  /// Whether a grip is at the begin or end of the contact.
+  bool held_at_begin = false, held_at_end = false;
 
   /// Returns the multipliers of all contacts with zeros for those of other contacts.
   [[nodiscard]] Eigen::VectorXd own(const Eigen::VectorXd& multipliers) const;

@@ -78,7 +78,7 @@ class ContactRows {
     obstacle::Body body;
     Eigen::Index row = 0;
     double at = 0;             // arc length where the search for it begins
-    Eigen::Index before = 0;   // element that ends there
+    Eigen::Index before = 0;   // element that ends at the contact
     double low = 0, high = 0;  // bounds of its arc length
   };
   [[nodiscard]] Eigen::Index add_row();

@@ -219,7 +219,8 @@ TEST(Mjcf, PartsWithoutEffectAtRestAreIgnoredAndListed) {
                    {"ignored: 1 actuator, 2 sensors, 1 site", "\"spot\" is ignored"}));
 }
 
-/// A cable on a carriage, or a free one that nothing else holds, is held where the model puts it.
+/// A slide or free joint of the first body is ignored: if nothing else holds the cable, its first
+/// body is clamped at its pose in the model.
 TEST(Mjcf, SlideAndFreeJointsOfTheBaseAreIgnored) {
   for (const char* joint : {"<freejoint/>", "<joint type=\"slide\" axis=\"1 0 0\"/>"}) {
     const Scene scene =

@@ -90,7 +90,7 @@ struct AlignOptions {
 
 /// A measured shape aligned with a reference.
 struct Alignment {
-  RigidMotion pose;  ///< from the file's frame to the scene's
+  RigidMotion pose;  ///< motion from the file's frame to the scene's
   /// Whether the file's points, or with ArcLengths::file its arc lengths, run from the rod's arc
   /// length l to 0.
   bool reversed = false;

@@ -31,8 +31,8 @@ struct CalibratedRod {
   std::vector<Eigen::Vector2d> natural_curvature;
   /// Grippers whose direction or position differs from the scenes'.
   std::vector<ClampCorrection> clamps;
-  std::optional<double> damping;         ///< Kelvin-Voigt time of the material [s]
-  std::optional<double> drag;            ///< of the air, per length and velocity [N s/m^2]
+  std::optional<double> damping;  ///< Kelvin-Voigt time of the material [s]
+  std::optional<double> drag;     ///< drag of the air, force per length and velocity [N s/m^2]
   std::optional<double> quadratic_drag;  ///< across the rod, per squared velocity [N s^2/m^3]
   /// Rotation vector of the camera [rad]: shapes, and gravity with them, are rotated by it about
   /// the first gripper in the coordinates in which they were measured.

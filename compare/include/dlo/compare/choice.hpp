@@ -11,7 +11,7 @@ template <typename Value>
 struct Choice {
   Value value;          ///< value of the enumeration
   const char* name;     ///< name in files and options
-  const char* meaning;  ///< for help; may be empty
+  const char* meaning;  ///< description for help; may be empty
 };
 
 /// The only table of an enumeration's values, shared by files, options, help and output. It is

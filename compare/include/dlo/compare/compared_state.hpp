@@ -10,7 +10,8 @@ namespace dlo::compare {
 struct OtherState {
   /// Whether its second variation is positive; also true if its stability is not verified.
   bool stable = false;
-  double energy_difference_J = 0;  ///< its energy minus that of the compared equilibrium [J]
+  /// Energy of this equilibrium minus that of the compared one [J].
+  double energy_difference_J = 0;
   double rms_from_compared_m = 0;  ///< RMS distance along the rod from the compared equilibrium [m]
   double rms_from_shape_m = 0;     ///< RMS distance from the shape [m]
 };

@@ -20,7 +20,7 @@ using Reference = std::function<energy_model::Samples(std::span<const double>)>;
 struct Deviation {
   double rms_m = 0;            ///< sqrt(1/l int |dr|^2 ds)
   double max_m = 0;            ///< largest distance of a point [m]
-  double max_at_m = 0;         ///< arc length of that point [m]
+  double max_at_m = 0;         ///< arc length of the point with the largest distance [m]
   double tip_m = 0;            ///< distance at the free end [m]; NaN without one
   double rms_over_length = 0;  ///< RMS distance divided by the length [-]
   /// RMS distance divided by the RMS displacement of the reference from the straight rod [-]; NaN

@@ -35,7 +35,8 @@ struct Explanation {
   double rms_m = 0;   ///< RMS deviation of the whole rod if the cause is right
   int numbers = 0;    ///< number of quantities that were fitted to the shape
   ExplanationKind kind = ExplanationKind::scene;  ///< subject of the explanation
-  double max_m = 0;  ///< of a discretisation: largest deviation of a point from the chain
+  /// Largest deviation of a point from the chain; only if the cause is a discretisation.
+  double max_m = 0;
 };
 
 /// Searches for a cause that explains a shape's deviation. Causes of the file, one or several at a

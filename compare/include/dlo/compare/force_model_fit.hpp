@@ -73,9 +73,9 @@ struct ForceModelFit {
   std::vector<RuleDeviations> rules;  ///< all rules that were tried
   /// RMS deviation of the force model, stepped to rest with `settings`, divided by the length [-].
   std::vector<double> stepped_rms_over_length;
-  /// RMS distance of that shape from the chain's (solve_chain()) at the same N, divided by the
-  /// length [-]: the effect of stretch where the chain's segments are rigid. It hardly depends on
-  /// N.
+  /// RMS distance of the stepped shape from the chain's (solve_chain()) at the same N, divided by
+  /// the length [-]: the effect of stretch where the chain's segments are rigid. It hardly depends
+  /// on N.
   std::vector<double> stretch_rms_over_length;
   std::vector<long> steps;    ///< number of steps to rest, of each scene
   double order = 0;           ///< measured order of convergence in the segment length; 0: not used

@@ -42,7 +42,7 @@ struct PlannedTwist {
   /// Rotation of the end relative to the begin by the grippers [rad]; NaN if the clamps give it by
   /// their directors.
   double turn = 0;
-  /// Part of that rotation that becomes twist of the rod [rad]; NaN if it was not solved.
+  /// Part of `turn` that becomes twist of the rod [rad]; NaN if it was not solved.
   double twist = std::numeric_limits<double>::quiet_NaN();
 };
 

@@ -30,7 +30,7 @@ struct FrameHold {
   /// Empty: d1 of the first clamp that holds the frame, carried here by the shortest rotation of
   /// its direction.
   std::optional<Eigen::Vector3d> d1;
-  double roll = 0;  ///< rotation of that d1 about the direction [rad]; whole turns count
+  double roll = 0;  ///< rotation of d1 about the direction [rad]; whole turns count
 
   /// Compares all fields.
   bool operator==(const FrameHold&) const = default;
@@ -131,7 +131,7 @@ struct Section {
 struct NamedValue {
   const char* name = "";  ///< "E", "EI" or "EI about d1"; "density" or "mass per length"
   const char* unit = "";  ///< "Pa" or "N m^2"; "kg/m^3" or "kg/m"
-  double value = 0;       ///< in that unit
+  double value = 0;       ///< value in `unit`
 };
 
 /// Poisson's ratio nu of a rod whose torsional stiffness is needed and not given: GJ = EI / (1 +
@@ -164,8 +164,8 @@ struct Scene {
   /// d [m]; 0: unknown. A material then requires a rectangular section.
   double diameter = 0;
   double inner_diameter = 0;  ///< inner diameter of a tube [m], < diameter; 0: solid
-  double width = 0;           ///< of a rectangular section, along d1 [m]; 0: not rectangular
-  double thickness = 0;       ///< of a rectangular section, along d2 [m]
+  double width = 0;           ///< edge of a rectangular section along d1 [m]; 0: not rectangular
+  double thickness = 0;       ///< edge of a rectangular section along d2 [m]
   Material material;          ///< youngs_modulus 0: unknown; for layers the mean over the section
   /// Bounds of the stiffnesses of a rod of layers; given_bending_stiffness and torsional_stiffness
   /// are set to one of the two bounds.

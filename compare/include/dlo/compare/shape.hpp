@@ -12,7 +12,7 @@ struct Shape {
   /// Whether a gripper at s = 0 holds the middle of the first segment, of which the shape contains
   /// only the rod's own half.
   bool half_at_start = false;
-  bool half_at_end = false;  ///< likewise for the last segment at s = l
+  bool half_at_end = false;  ///< whether a gripper at s = l holds the middle of the last segment
 };
 
 /// Returns the arc length that a polygon's joint represents [m]: half of both adjacent segments,

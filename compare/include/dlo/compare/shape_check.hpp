@@ -67,7 +67,7 @@ struct ShapeCheck {
   double polyline_length_m = 0;  ///< length of the polyline through the points
   double seen_share = 0;         ///< arc length from the first point to the last, divided by l [-]
   double largest_gap_m = 0;      ///< largest arc length between adjacent points
-  double largest_gap_at_m = 0;   ///< start of that interval
+  double largest_gap_at_m = 0;   ///< arc length at which the largest gap begins
   /// Number of the file's points that are not where a gripper holds the rod.
   long measured_points = 0;
   bool direction_is_clear = false;  ///< whether the other direction fits at least 5 % worse

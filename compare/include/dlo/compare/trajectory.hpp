@@ -28,7 +28,7 @@ struct MarkerPosition {
 
 /// A recorded motion of markers on a rod.
 struct MarkerMotion {
-  std::string file;                       ///< for messages
+  std::string file;                       ///< name of the file, for messages
   std::vector<MarkerPosition> positions;  ///< by time, then by arc length; one or more
 };
 

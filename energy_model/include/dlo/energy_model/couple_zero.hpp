@@ -10,7 +10,7 @@ namespace dlo::energy_model {
 /// the sum of two rotations of the tangent: from `direction` to the tangent at `at`, in (-pi, pi],
 /// and from there along the rod to the load.
 struct CoupleZero {
-  double at = 0;              ///< arc length of the reference [m]
+  double at = 0;              ///< arc length of the reference tangent: a clamp, or 0 [m]
   Eigen::Vector3d direction;  ///< reference direction, unit vector
 };
 

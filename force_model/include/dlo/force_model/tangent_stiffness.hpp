@@ -11,7 +11,7 @@ namespace dlo::force_model {
 /// positions.
 struct StiffnessMatrix {
   std::vector<Eigen::Index> points;  ///< indices of the points that no rigid grip holds
-  Eigen::MatrixXd entries;  ///< three rows and columns x, y, z for each of these points [N/m]
+  Eigen::MatrixXd entries;  ///< three rows and columns x, y, z for each point of `points` [N/m]
 };
 
 /// Computes the tangent stiffness of a rod without natural angles, including the contributions of
