@@ -199,7 +199,8 @@ std::optional<MotionStart> smooth_start(const Scene& scene, const MarkerMotion& 
     const MarkerPosition& at = rows.positions[i];
     motion->add_point(*on_rod(at.arc_length, scene.length), at.time, at.position, 1);
   }
-  constexpr double exact = 30;  // weight of a gripper; a marker moves it by a thousandth
+  // Weight of a gripper relative to that of a marker, which then moves it by a thousandth only.
+  constexpr double exact = 30;
   for (const double time : times) {
     const Scene now =
         times.size() > 1 ? scene_at(scene, time, time) : scene_at(scene, begin, begin);

@@ -44,9 +44,9 @@ struct WireNumber {
 [[nodiscard]] std::string why_no_camera_tilt(const std::vector<Scene>& scenes,
                                              const std::vector<MeasuredShape>& shapes);
 
-/// Returns the scenes with a first clamp that defines d1, so that it keeps holding d1 when it is
-/// rotated out of the scene's plane. If the scene determines d1 only up to `roll_tolerance`, d1 is
-/// level.
+/// Returns the scenes with d1 stated explicitly at the first clamp. A fit may rotate this clamp out
+/// of the scene's plane, which would otherwise define d1. If the scene determines d1 only up to
+/// `roll_tolerance`, d1 is level.
 /// @param flat  for each scene, whether its shape was measured in the scene's plane, which
 /// determines d1
 [[nodiscard]] std::vector<Scene> with_said_frames(std::vector<Scene> scenes,

@@ -155,7 +155,8 @@ class VariationProblem {
     }
   }
 
-  /// Adds a place. Multipliers precede dr, because dr has a pivot only through them.
+  /// Adds a Place with its unknowns. Multipliers precede dr, because dr has a pivot only through
+  /// them.
   void add_place(Eigen::Index end, const Eigen::Matrix3Xd& basis, const Eigen::Matrix3d& hessian) {
     const Eigen::Index multipliers = places_.empty() ? 0 : 3;
     places_.push_back({end, basis, hessian, size_ + multipliers, size_});

@@ -106,8 +106,8 @@ class FreeBoundaryNewton {
     return result;
   }
 
-  /// Moves the ends.
-  /// @param[in,out] way  shortened if it leads to no equilibrium
+  /// Moves the free ends of contact and solves for the equilibrium there.
+  /// @param[in,out] way  displacements of the ends; shortened if it leads to no equilibrium
   /// @return whether an equilibrium was found
   [[nodiscard]] bool move(Eigen::VectorXd& way) {
     const Eigen::VectorXd whole = way;

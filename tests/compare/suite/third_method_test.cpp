@@ -1,5 +1,5 @@
-// The bounds of ten answers by a third method, which made none of them: chains of hinges with N, 2N
-// and 4N points, extrapolated.
+// Tests of the error bounds of ten answers by a third method, with which no answer was computed:
+// extrapolation from chains of hinges with N, 2N and 4N points.
 
 #include <gtest/gtest.h>
 

@@ -7,7 +7,7 @@ namespace dlo::force_model {
 
 /// Way in which a grip holds its points.
 enum class GripHold {
-  rigid,   ///< positions are prescribed, as in comparisons
+  rigid,   ///< positions are prescribed exactly, as in the energy model
   spring,  ///< each point is attached to a spring (Formula 5, constraint 3), as for a haptic device
 };
 
