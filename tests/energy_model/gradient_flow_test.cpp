@@ -23,8 +23,9 @@ Problem rolled(const Eigen::Vector3d& end, const Eigen::Vector3d& direction, dou
   return problem;
 }
 
-/// Returns the distance of a shape between horizontal clamps 0.8 apart from itself after half a
-/// rotation about the vertical line halfway, which exchanges the ends.
+/// Returns the largest distance between the points of a shape, with horizontal clamps 0.8 apart,
+/// and those after a half rotation about the vertical line halfway between the clamps. This
+/// rotation exchanges the ends.
 double asymmetry(const Equilibrium& shape) {
   const Eigen::Matrix3Xd points = shape.sample(equal_arc_lengths(1, 21)).points;
   Eigen::Matrix3Xd turned = points.rowwise().reverse();

@@ -136,9 +136,9 @@ TEST_P(BothModels, BendsObliquelyUnderAForceBetweenItsAxes) {
   EXPECT_GT(std::abs(tip.z()), 0.5 * F / 3 * (1 / B1 - 1 / B2) * 0.99);
 }
 
-/// Tip load at which a cantilever that is bent about its stiff axis, 1/`softness` times as stiff as
-/// the weak one, can leave its plane: where the smallest eigenvalue of the second variation, a
-/// parabola through three loads, vanishes.
+/// Returns the tip load at which a cantilever that is bent about its stiff axis, 1/`softness` times
+/// as stiff as the weak one, can leave its plane. There the smallest eigenvalue of the second
+/// variation, a parabola through three loads, is zero.
 double lateral_buckling_load(const Solver& solve, double weak, double torsion, double softness,
                              double guess) {
   const auto eigenvalue = [&](double load) {

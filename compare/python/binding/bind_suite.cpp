@@ -98,8 +98,8 @@ struct Gate {
   compare::RegressionTolerance tolerance;
 };
 
-/// Reads the baseline and its tolerance. @throws compare::InputError if a tolerance is out of
-/// range, or naming the baseline's file
+/// Reads the baseline and its tolerance; std::nullopt if no baseline is named.
+/// @throws compare::InputError if a tolerance is out of range, or naming the baseline's file
 std::optional<Gate> gate_of(const py::dict& what) {
   const auto file = what["baseline"].cast<std::string>();
   if (file.empty()) return std::nullopt;

@@ -42,7 +42,7 @@ bool same(const struct stat& a, const struct stat& b) {
 }
 
 /// Returns N if a folder without links is this process's list of descriptors and the name in it is
-/// N.
+/// N >= 0; else std::nullopt.
 std::optional<int> descriptor_named(const fs::path& folder, const std::string& name) {
   if (folder != fmt::format("/proc/{}/fd", ::getpid())) return std::nullopt;
   const std::optional<int> number = as_number<int>(name);

@@ -49,8 +49,8 @@ BaselineCase read_case(StrictTable& table) {
   return result;
 }
 
-/// Formats a number as a TOML float: with a decimal point or an exponent, so that 0 is written as
-/// 0.0.
+/// Formats a number as a TOML float with six significant digits. It always has a decimal point, so
+/// that 0 is written as 0.00000.
 std::string toml_number(double value) { return fmt::format("{:#.6g}", value); }
 
 }  // namespace

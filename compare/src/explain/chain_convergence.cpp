@@ -20,8 +20,9 @@ namespace {
 /// Deviation, in tolerances, above which the deviation of a misread file is not meaningful.
 constexpr double far_beyond = 10;
 
-/// Returns the chain that the file is nearest to, if the file is near enough to be that chain's
-/// points: its polyline is as long as the rod, and enough of the rod is observed.
+/// Returns the chain that the file is nearest to. Returns std::nullopt unless the file's polyline
+/// is as long as the rod within the tolerance, enough of the rod is observed, and the file is
+/// within `right_chain` of the tolerance from the chain.
 std::optional<OwnPolygon> chain_of_file(const Scene& scene, const ShapeCheck& check,
                                         const ShapeTolerance& tolerance) {
   const double longer = check.polyline_length_m - check.length_m;

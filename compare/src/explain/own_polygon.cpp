@@ -387,7 +387,7 @@ class Chain {
 };
 
 /// Returns the chain with the springs that fit best, by Gauss-Newton steps along the logarithm of
-/// their stiffness.
+/// their stiffness; std::nullopt if a chain does not come to rest.
 std::optional<OwnPolygon> fitted(const Chain& chain, Eigen::Matrix3Xd rest, JointLaw law) {
   constexpr int most_steps = 10;
   constexpr double stride = 0.01;

@@ -23,7 +23,8 @@ bool are_starts(const Eigen::Matrix3Xd& points, double segment) {
   return (chord_lengths(points).array() - segment).abs().maxCoeff() <= like_the_model * segment;
 }
 
-/// Returns the end of the last segment if a gripper holds it.
+/// Returns the position of the gripper at the rod's end if it is one segment away from `last`; else
+/// std::nullopt.
 std::optional<Vector3d> held_end(const Scene& scene, const Vector3d& last, double segment) {
   for (const Gripper& gripper : scene.grippers) {
     const bool at_end = std::abs(gripper.at - scene.length) < 1e-6 * scene.length;

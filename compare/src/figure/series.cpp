@@ -24,7 +24,7 @@ double signed_curvature(const std::optional<Eigen::Vector3d>& normal,
   return normal ? binormal.dot(*normal) : binormal.norm();
 }
 
-/// Returns the normal of the scene's plane if all points are in it.
+/// Returns the normal of the scene's plane if all points are in it; else std::nullopt.
 std::optional<Eigen::Vector3d> plane_through(const Scene& scene, const Eigen::Matrix3Xd& points) {
   constexpr double thick = 1e-6;  // in lengths
   std::optional<Eigen::Vector3d> normal = scene.plane_normal();

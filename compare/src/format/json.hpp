@@ -21,8 +21,8 @@ using compare::points_json;
 using compare::text_or_null;
 using compare::to_json;
 
-/// Returns a document as every command writes it: NaN and infinity become null, and invalid UTF-8
-/// in a file name becomes U+FFFD.
+/// Returns a document as text, as every command writes it: NaN and infinity become null, -0 becomes
+/// 0, and invalid UTF-8 in a text becomes U+FFFD.
 [[nodiscard]] std::string json_text(const Json& document);
 
 [[nodiscard]] Json modulus_json(const compare::EffectiveModulus& modulus);

@@ -26,8 +26,11 @@ struct LinearFit {
 
 /// Returns the covariance of the numbers after a least squares fit that assumes independent errors,
 /// if the errors have another covariance (sandwich estimator).
-/// @param series  of the fit;  @param weight  variance by which its squares were divided
-/// @param errors  covariance of the errors, up to `variance`
+/// @param series    residual series of the fit
+/// @param weight    variance by which the squares of the fit were divided
+/// @param before    inverse standard deviations of the prior
+/// @param errors    covariance of the errors, divided by `variance`
+/// @param variance  factor on `errors`
 [[nodiscard]] Eigen::MatrixXd sandwich_covariance(const std::vector<ResidualSeries>& series,
                                                   const LinearFit& fit, double weight,
                                                   const Eigen::VectorXd& before,

@@ -62,9 +62,11 @@ struct MjcfNode {
   pugi::xml_node element;
   std::string childclass = {};  ///< class that surrounding elements set
 
-  /// Returns the text of an attribute, from the element or its class.
+  /// Returns the text of an attribute, from the element or its class; std::nullopt if neither has
+  /// it.
   [[nodiscard]] std::optional<std::string> text(const char* attribute) const;
-  /// Reads `least` to `most` numbers, finite and within 1e12.
+  /// Reads `least` to `most` numbers, finite and within 1e12; std::nullopt if the attribute is not
+  /// given.
   [[nodiscard]] std::optional<std::vector<double>> numbers(const char* attribute, std::size_t least,
                                                            std::size_t most) const;
   [[nodiscard]] std::optional<double> number(const char* attribute) const;

@@ -31,7 +31,7 @@ void require_slack(const Scene& scene);
 /// @throws InputError in the same cases
 [[nodiscard]] Layout lay_out(const Scene& scene, const ForceModelSettings& settings);
 
-/// Returns what the scene's grippers hold of its polygon: one grip for each gripper.
+/// Returns the grips of the polygon, one for each gripper of the scene.
 [[nodiscard]] std::vector<force_model::Grip> grips_of(const Scene& scene, const Layout& layout);
 
 /// Checks that the held segments leave enough rod between neighbouring grips. With few points held

@@ -28,7 +28,7 @@ Eigen::Vector3d read_direction(StrictTable& table) {
 /// Rounding error of a rotation matrix or a quaternion that is given with six decimals.
 constexpr double rotation_tolerance = 2e-6;
 
-/// Reads the columns d1, d2, d3 of a clamp, if the file gives them.
+/// Reads the columns d1, d2, d3 of a clamp; std::nullopt if the file does not give them.
 std::optional<Eigen::Matrix3d> read_directors(StrictTable& table) {
   const std::optional<Eigen::Matrix3d> rows = table.optional_rows("frame");
   const std::optional<Eigen::Quaterniond> quaternion = table.optional_quaternion("quaternion");

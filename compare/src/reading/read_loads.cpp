@@ -18,7 +18,8 @@ double displaced_area(const Scene& scene) {
   return std::numbers::pi * scene.diameter * scene.diameter / 4;
 }
 
-/// Reads the drag on the rod, by Morison's law with the rod's diameter.
+/// Reads the drag on the rod, by Morison's law with the rod's diameter; std::nullopt without the
+/// key `velocity`.
 std::optional<energy_model::Drag> read_drag(StrictTable& table, double density, double diameter) {
   if (!table.has("velocity")) return std::nullopt;
   if (!(diameter > 0)) {

@@ -31,7 +31,8 @@ std::optional<GivenBending> read_bending_stiffness(StrictTable& table) {
   return GivenBending{pair.x(), pair.y()};
 }
 
-/// Reads EI of a rod that is given by its EI, or by the joints of a chain.
+/// Reads EI of a rod that is given by its EI, or by the joints of a chain; std::nullopt if neither
+/// is given.
 std::optional<GivenBending> read_bending(StrictTable& rod, double length) {
   if (!rod.has("joint_stiffness")) return read_bending_stiffness(rod);
   const Range spacing = Range::between(1e-6 * length, length, " m");

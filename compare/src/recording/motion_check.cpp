@@ -172,7 +172,7 @@ class CauseSearch {
     if (motion && motion->begin < *models.options.from) earliest_ = *models.options.from;
   }
 
-  /// Returns the lag of the recording relative to the judged model.
+  /// Returns the lag of the recording relative to the judged model; std::nullopt as best_lag().
   [[nodiscard]] std::optional<MotionShift> lag() const {
     return best_lag(recorded_, *models_.of(check_.model), earliest_, Displacement::none);
   }

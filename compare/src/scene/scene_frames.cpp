@@ -76,7 +76,7 @@ Eigen::Vector2d series_curvature(const Scene& scene, double begin, double end) {
   return mean;
 }
 
-/// Returns the index of the first clamp along the rod.
+/// Returns the index of the first clamp along the rod; std::nullopt if there is none.
 std::optional<std::size_t> first_clamp_of(const Scene& scene) {
   std::optional<std::size_t> first;
   for (std::size_t i = 0; i < scene.grippers.size(); ++i) {

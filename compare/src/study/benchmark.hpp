@@ -123,7 +123,7 @@ struct BenchmarkReport {
 void mark_front(std::vector<BenchmarkRun>& runs);
 
 /// Returns the index of the fastest run with an error of at most `error`, of all runs or of one
-/// model's.
+/// model's; std::nullopt if no run is so accurate.
 [[nodiscard]] std::optional<std::size_t> fastest_within(const std::vector<BenchmarkRun>& runs,
                                                         double error,
                                                         std::optional<Model> model = {});

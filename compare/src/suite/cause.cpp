@@ -134,7 +134,8 @@ class Diagnosis {
     return is_near ? std::optional(*best) : std::nullopt;
   }
 
-  /// Returns the stiffness of the springs of the chain that fits the shape best, divided by EI/h.
+  /// Returns the stiffness of the springs of the chain that fits the shape best, divided by EI/h;
+  /// std::nullopt as nearest_chain().
   [[nodiscard]] std::optional<double> spring_factor(const CardShape& shape,
                                                     double may_leave) const {
     const std::optional<OwnPolygon> best = nearest_chain(shape, Springs::fitted, may_leave);

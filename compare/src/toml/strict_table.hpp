@@ -81,9 +81,9 @@ class StrictTable {
   /// Reads rows of three lengths, which become columns; or of six numbers in every row, a point and
   /// a vector at it.
   Eigen::MatrixXd points(std::string_view key);
-  /// Reads three rows of three numbers each.
+  /// Reads three rows of three numbers each; std::nullopt if the key is not given.
   std::optional<Eigen::Matrix3d> optional_rows(std::string_view key);
-  /// Reads a quaternion as it is written, of any norm.
+  /// Reads a quaternion as it is written, of any norm; std::nullopt if the key is not given.
   std::optional<Eigen::Quaterniond> optional_quaternion(std::string_view key);
   /// Refuses the first of these keys that is given. @throws InputError with `problem`
   void refuse(const std::vector<std::string>& keys, const std::string& problem) const;

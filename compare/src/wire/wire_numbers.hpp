@@ -28,9 +28,10 @@ struct WireNumber {
   std::optional<Eigen::Vector3d> camera_axis = std::nullopt;  ///< axis of a camera's tilt, unit
 };
 
-/// Returns the options with which the shapes of a fit are aligned with its rods. A photograph has
-/// no third coordinate: a fit of natural curvature would bend the rod out of the picture to reduce
-/// the residuals in it, so the rod is confined to its plane.
+/// Returns the options with which the shapes of a fit are aligned with its rods. If natural
+/// curvature is fitted, the rod of a planar shape is confined to its plane. A photograph has no
+/// third coordinate: the fit would otherwise bend the rod out of the picture to reduce the
+/// residuals in it.
 [[nodiscard]] inline MeasuredOptions measured_options(const MaterialFitOptions& options) {
   return {
       .pose = options.pose,

@@ -59,7 +59,8 @@ class WireIntervals {
 
  private:
   /// Returns the factor by which the interval is wider because the residuals exceed the given
-  /// noise; 1 if they do not.
+  /// noise, and adds a warning; 1 without a warning if the excess is not significant at 5 %, or if
+  /// no noise is given.
   [[nodiscard]] double misfit(MaterialFit& fit) const {
     if (!problem_.options.noise) return 1;
     constexpr double significant = 0.05;

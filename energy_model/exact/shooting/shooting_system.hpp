@@ -80,7 +80,8 @@ class ShootingSystem {
   /// contact by at most 0.3 of the distance between its neighbouring grips, loads or contacts.
   [[nodiscard]] double allowed_part(const ShootingPoint& point, const Eigen::VectorXd& step) const;
 
-  /// Returns the largest gap. A tangent that points backwards at a clamp counts as a gap too.
+  /// Returns the largest gap; infinity if evaluate() fails. A tangent that points backwards at a
+  /// clamp counts as a gap too.
   [[nodiscard]] double gap(const ShootingPoint& point) const;
 
  private:

@@ -40,7 +40,7 @@ bool leaves_plane(const SpanDrive& drive) {
          std::any_of(drive.obstacles.begin(), drive.obstacles.end(), carries_out);
 }
 
-/// Returns the drive at the same positions with zero velocities.
+/// Returns the drive at the same positions with zero velocities and accelerations.
 SpanDrive at_rest(SpanDrive drive) {
   drive.spin = drive.spin_rate = drive.end_spin = Eigen::Vector3d::Zero();
   for (Moving& grip : drive.grips) grip = {grip.value};
@@ -209,7 +209,8 @@ class MovingSpan {
     return breaks;
   }
 
-  /// Returns d1 at the begin of the span, for a span where no clamp prescribes it.
+  /// Returns d1 at the begin of the span, for a span where no clamp prescribes it; std::nullopt if
+  /// the start has no d1.
   [[nodiscard]] std::optional<Eigen::Vector3d> first_d1(const StartingShape& start) const {
     const Samples at = start(std::vector<double>{placed_.start});
     if (at.d1.cols() == 0) return std::nullopt;

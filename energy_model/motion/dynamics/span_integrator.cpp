@@ -117,7 +117,8 @@ SpanIntegrator::Factor& SpanIntegrator::factor_of_points(const SpanInstant& at, 
   return of_points_;
 }
 
-/// Predicts the stages of a step by the polynomials of the previous one.
+/// Predicts the stages of a step by the polynomials of the previous one; zero if there is no
+/// previous step, or if it did not end at the time of `at`.
 Eigen::MatrixXd SpanIntegrator::predicted(const SpanInstant& at, double step,
                                           const Stages& known) const {
   if (!(known.step > 0) || known.end != at.time) {

@@ -21,7 +21,8 @@ struct SpanModes {
 /// `outside` is largest and smallest.
 /// @param mass     M
 /// @param outside  mass matrix of the movement along one axis
-/// @param count    number of modes; fewer are returned if fewer have inertia
+/// @param count    number of modes; fewer are returned if fewer have inertia, and none if no
+///                 H + shift M is positive definite
 [[nodiscard]] SpanModes span_modes(const Eigen::MatrixXd& hessian, const Eigen::MatrixXd& jacobian,
                                    const Eigen::MatrixXd& mass, const Eigen::MatrixXd& outside,
                                    Eigen::Index count);

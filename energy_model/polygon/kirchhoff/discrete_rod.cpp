@@ -343,7 +343,7 @@ class DiscreteRod {
 };
 
 /// Takes a Newton step with a shift for which the Hessian is positive definite, halved until the
-/// augmented energy decreases, and adapts the shift.
+/// augmented energy decreases, and adapts the shift. Returns std::nullopt if no shift suffices.
 std::optional<RodStep> descend_once(DiscreteRod& rod, double unit, double& shift) {
   const RodModel model = rod.model();
   std::optional<RodStep> step = rod.newton_step(model, shift);

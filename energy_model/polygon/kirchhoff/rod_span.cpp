@@ -63,8 +63,8 @@ std::optional<Plane> plane_of(const RodSpan& span) {
   return find_plane(span.holds.front().position, *first, directions);
 }
 
-/// Returns the plane across the second axis of the first frame, if grips, forces and natural
-/// strains keep the span in it.
+/// Returns the plane across the second axis of the first frame if grips, forces and natural strains
+/// keep the span in it; else std::nullopt.
 std::optional<Plane> plane_across_d2(const RodSpan& span) {
   constexpr double rounding = 1e-12;
   const Eigen::Vector3d normal = span.first_frame.col(1);

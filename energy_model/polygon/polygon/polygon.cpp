@@ -148,8 +148,9 @@ class PolygonDescent {
     return take(step, size);
   }
 
-  /// Leaves a saddle along the lowest mode. If the exact Hessian is positive, the iteration only
-  /// continues without damping.
+  /// Leaves a saddle along the lowest mode. If the polygon is at rest and the exact Hessian is
+  /// positive, the iteration only continues without damping. Returns std::nullopt if the iteration
+  /// continues, `saddle` after too many attempts, and `failed` if no damping suffices.
   [[nodiscard]] std::optional<SolveStatus> leave(bool at_rest) {
     assemble(HessianTerms::all);
     if (at_rest && factor(0)) {

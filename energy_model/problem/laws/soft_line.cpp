@@ -151,7 +151,8 @@ class SoftLine {
     return std::abs(grips[0].at - grips[1].at) > l / 2;
   }
 
-  /// Returns the height of the floor if the obstacle is a horizontal rigid half-space.
+  /// Returns the height of the floor if the obstacle is a horizontal rigid half-space; std::nullopt
+  /// for another obstacle or none.
   [[nodiscard]] std::optional<double> floor() const {
     if (problem_.obstacles.empty()) return std::nullopt;
     const Obstacle& obstacle = problem_.obstacles.front();

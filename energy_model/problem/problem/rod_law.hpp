@@ -84,8 +84,8 @@ struct OrderedGrip {
 [[nodiscard]] std::vector<OrderedGrip> ordered_grips(const Problem& problem);
 
 /// Returns the index in Problem::grips of the clamp that alone carries a load, because they are
-/// within 1e-9 l of each other. Every other load is carried by exactly one span, so that each
-/// counts once.
+/// within 1e-9 l of each other; std::nullopt if there is no such clamp. Every other load is carried
+/// by exactly one span, so that each counts once.
 [[nodiscard]] std::optional<std::size_t> clamp_under(const Problem& problem, const Load& load);
 
 /// Adds the loads on clamps to the clamps' reactions, and their potential relative to the first

@@ -27,7 +27,8 @@ Eigen::Vector3d part_across(const Eigen::Vector3d& v, const Eigen::Vector3d& dir
   return (v - v.dot(direction) * direction).normalized();
 }
 
-/// Returns the shortest rotation of a clamp's direction into another's.
+/// Returns the shortest rotation of a clamp's direction into another's; std::nullopt if they are
+/// opposite and along the chord (shortest_rotation()).
 std::optional<Eigen::Quaterniond> rotation_between(const Grip& from, const Grip& to,
                                                    double length) {
   return shortest_rotation(from.direction->normalized(), to.direction->normalized(),

@@ -124,7 +124,8 @@ inline constexpr double neutral = 1e-7;
 /// Whether no eigenvalue of a symmetric matrix is below -`neutral`; only the lower half is read.
 [[nodiscard]] bool is_minimum(const Eigen::MatrixXd& hessian);
 
-/// Returns the unit eigenvector of the smallest eigenvalue if that is at most -`neutral`.
+/// Returns the unit vector of the unknowns along the eigenvector of the smallest eigenvalue, if
+/// that is at most -`neutral`; else std::nullopt.
 [[nodiscard]] std::optional<Eigen::VectorXd> negative_curvature_direction(
     const ReducedHessian& hessian);
 

@@ -40,7 +40,7 @@ void turn_to(PlacedShape& shape, double length, double arc_length, const Eigen::
   shape.ahead = [by, before = std::move(shape.ahead)](double s) { return by + before(s); };
 }
 
-/// Returns d1 of the frame that the first twisting grip prescribes.
+/// Returns d1 of the frame that the grip at an arc length prescribes; there must be such a grip.
 Eigen::Vector3d first_d1(const Problem& problem, double arc_length) {
   const auto grip = std::ranges::find_if(problem.grips, [&](const Grip& each) {
     return each.frame && std::abs(each.at - arc_length) <= same_hold * problem.length;

@@ -281,7 +281,8 @@ class TwistPath {
     last_step_.resize(0);
   }
 
-  /// Displaces an unstable shape and descends. @return a stable equilibrium
+  /// Displaces an unstable shape along a direction of negative curvature and descends. @return a
+  /// stable equilibrium; std::nullopt if none is found
   [[nodiscard]] std::optional<SpanSolution> descended(const SpanSolution& from) {
     const SecondDerivatives at = second_derivatives(from);
     ReducedHessian reduced;

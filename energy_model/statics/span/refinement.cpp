@@ -80,7 +80,8 @@ class Refinement {
 
  private:
   /// Continues on an adapted mesh if the affordable coefficients do not resolve a shape: its
-  /// elements may end at the wrong places.
+  /// elements may end at the wrong places. Returns std::nullopt if the mesh cannot be adapted
+  /// (adapted_mesh()) or if no equilibrium is found on the adapted one.
   [[nodiscard]] std::optional<SpanSolution> on_adapted_mesh(const SpanSolution& solution) {
     const std::optional<Span> span = adapted_mesh(on_, solution);
     if (!span) return std::nullopt;

@@ -54,9 +54,10 @@ struct Explanation {
                                                      const ShapeCheck& check,
                                                      const ShapeCheckOptions& options);
 
-/// Returns the cause that explains a shape better than any stiffness, if E* is identified: it
-/// leaves less than half of the deviation that E* leaves, with two fitted numbers less than a
-/// quarter, and so on. E* is then not a measure of the material.
+/// Returns the cause that explains a shape better than any stiffness: it leaves less than half of
+/// the deviation that E* leaves, with two fitted numbers less than a quarter, and so on. E* is then
+/// not a measure of the material. Returns std::nullopt if there is no such cause, or if E* is not
+/// identified.
 /// @param explanations  result of explain_shape(), for the same check
 [[nodiscard]] std::optional<Explanation> better_than_stiffness(
     const ShapeCheck& check, const std::vector<Explanation>& explanations);

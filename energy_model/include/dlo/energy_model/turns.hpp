@@ -93,7 +93,8 @@ struct HeldTurns {
                                            const Eigen::Vector3d& last);
 
 /// Returns the writhe of a shape between two arc lengths [m], from polygons with 64, 128, ...
-/// segments until its error is below 1e-7 or 2048 segments are reached.
+/// segments until its error is below 1e-7 or 2048 segments are reached. Empty as
+/// writhe_modulo_two().
 [[nodiscard]] std::optional<Writhe> writhe(
     const std::function<Samples(std::span<const double> arc_lengths)>& sample, double begin,
     double end);
