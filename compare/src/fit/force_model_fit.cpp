@@ -162,7 +162,8 @@ class ForceModelFitter {
     settings_.points = points;
   }
 
-  /// Returns the smallest number of points that fits the grippers of every scene.
+  /// Returns the smallest number of points, at least 5, that fits the grippers of every scene;
+  /// most_points if none below it does.
   [[nodiscard]] int least_points() const {
     ForceModelSettings settings = settings_;
     for (int points = 5; points < most_points; ++points) {

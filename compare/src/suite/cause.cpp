@@ -207,7 +207,8 @@ class Diagnosis {
     return is_found;
   }
 
-  /// Whether the shape is another equilibrium of the scene.
+  /// Adds a cause if the shape of the largest N is another equilibrium of the scene. @return
+  /// whether it is
   bool look_at_states() {
     constexpr double small = 1e-3;
     if (finest().error < small) return false;
@@ -227,8 +228,8 @@ class Diagnosis {
     return false;
   }
 
-  /// Whether the shape is at rest if the moments of the springs are a power other than 1 of the
-  /// angle.
+  /// Adds a cause if the bending moments balance with spring moments proportional to a power of the
+  /// angle other than 1. @return whether they do
   bool look_at_power() {
     constexpr double least = 0.25;
     constexpr double most = 5;

@@ -263,7 +263,7 @@ class Certification {
 
  private:
   /// Evaluates the residual of the solution. @return whether the shape satisfies the equations of
-  /// equilibrium
+  /// equilibrium with bounded reactions; if not, the solution fails
   [[nodiscard]] bool evaluate() {
     solution_.point = point_ = solution_.at_x();
     ++solution_.evaluations;

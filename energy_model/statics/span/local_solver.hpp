@@ -97,8 +97,9 @@ class LocalSolver {
   [[nodiscard]] SpanSolution from_start(const Start& from);
   /// Solves by Newton's method from an initial guess near an equilibrium.
   [[nodiscard]] SpanSolution newton_from(const TangentField& field);
-  /// Descends from solution.x by NLopt or, between grips, in a trust region; then runs Newton's
-  /// method.
+  /// Descends from solution.x by NLopt or, between grips, in a trust region. If the descent
+  /// succeeds, Newton's method follows, for a plain cantilever only if solution already has all of
+  /// its coefficients.
   void descend(SpanSolution& solution);
   /// Descends from solution.x by the method of multipliers, also from a shape from which the
   /// constraints cannot be restored; then runs Newton's method.

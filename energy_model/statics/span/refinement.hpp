@@ -16,9 +16,12 @@ namespace dlo::energy_model {
 /// nothing is to be cut, and for obstacles, material directors or a given number of coefficients.
 [[nodiscard]] std::optional<Span> adapted_mesh(const LocalSolver& on, const SpanSolution& shape);
 
-/// Certifies a solution. Evaluations of the certificate do not count. Near a fold truncation
-/// decides whether the shape exists, and elsewhere it may dominate the error estimate; in these
-/// cases the shape is solved and certified once more with half as many coefficients more.
+/// Certifies a solution, without counting the evaluations of the certificate. Near a fold
+/// truncation decides whether the shape exists, and elsewhere it may dominate the error estimate.
+/// In these cases the shape is solved and certified once more with half as many coefficients more,
+/// whose evaluations count, unless options.terms is given, the time is up or there would be too
+/// many unknowns. The second solution is returned if it is more accurate, or if only it is an
+/// equilibrium.
 [[nodiscard]] SpanSolution judged(SpanSolution solution, const SpanOptions& options,
                                   SpanWorkspace& workspace);
 

@@ -24,6 +24,7 @@ struct Choices<BendingRule> {
 ///     moment_matched:  Formula 21 divided by a, so that the joint's moment at curvature k is EI k
 /// @param bending_stiffness  EI [N m^2], > 0;  @param curvature  k [1/m], > 0
 /// @param segment_length     L [m], > 0, with L k < pi
+/// @throws std::invalid_argument if EI or L k is out of range
 [[nodiscard]] double paper_bending_stiffness(BendingRule rule, double bending_stiffness,
                                              double curvature, double segment_length);
 

@@ -40,6 +40,7 @@ struct Deviation {
 
 /// Returns sqrt(1/l int |difference|^2 ds) by the trapezoidal rule [m].
 /// @param difference  at the arc lengths, 3 x M
+/// @throws std::invalid_argument unless there are two or more points, one per arc length
 [[nodiscard]] double rms(const std::vector<double>& arc_length, const Eigen::Matrix3Xd& difference);
 
 /// Returns the RMS distance of a shape from a reference at the shape's arc lengths [m].

@@ -88,6 +88,7 @@ struct Calibration {
 /// @param scenes    one of each shape, then one of each hold-out shape, or a single one for all;
 /// else as in fit_material()
 /// @param held_out  shapes that are compared, but not fitted
+/// @throws InputError if the numbers of scenes and shapes differ; otherwise as fit_material()
 [[nodiscard]] Calibration calibrate(std::vector<Scene> scenes, std::vector<MeasuredShape> shapes,
                                     MaterialFitOptions options = {},
                                     const std::vector<MeasuredShape>& held_out = {});

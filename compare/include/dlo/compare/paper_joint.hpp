@@ -34,14 +34,16 @@ namespace dlo::compare {
 /// @param c_b     bending stiffness of the paper's law [N], > 0
 /// @param length  L of the segments [m], > 0
 /// @param angle   alpha [rad], 0 to pi
-/// @throws std::invalid_argument if a number is out of range; so do the other functions
+/// @throws std::invalid_argument if a number is out of range
 [[nodiscard]] double paper_joint_moment(double c_b, double length, double angle);
 
 /// Returns the angle at which a joint has this moment [rad].
-/// @param moment  [N m], 0 to 2 c_b L
+/// @param c_b, length  as in paper_joint_moment();  @param moment  [N m], 0 to 2 c_b L
+/// @throws std::invalid_argument if a number is out of range
 [[nodiscard]] double paper_joint_angle(double c_b, double length, double moment);
 
-/// Returns E_equiv I, (2) [N m^2]; 0 at angle 0.
+/// Returns E_equiv I, (2) [N m^2]; 0 at angle 0. Parameters and errors are those of
+/// paper_joint_moment().
 [[nodiscard]] double equivalent_bending_stiffness(double c_b, double length, double angle);
 
 }  // namespace dlo::compare

@@ -41,6 +41,7 @@ struct Shape {
 [[nodiscard]] Shape resample(const Shape& shape, const std::vector<double>& arc_lengths);
 
 /// Returns `count` arc lengths from 0 to `length`, equally spaced [m].
+/// @throws std::invalid_argument unless length > 0 and count >= 2
 [[nodiscard]] std::vector<double> equal_arc_lengths(double length, int count);
 
 }  // namespace dlo::compare
