@@ -162,7 +162,7 @@ bool ImplicitStep::solve(const Rod& rod) {
     touches = depth > 0 ? 1 : 0;
     if (depth > 0) press(wall, i, depth, 1);
   });
-  walls_energy_ = 0;  // that of now is part of energy_
+  walls_energy_ = 0;  // the present contact energy is already part of energy_
   for (int iteration = 0; iteration < most_active_set_iterations; ++iteration) {
     ++newton_steps_;
     lead_held_points(rod);

@@ -72,7 +72,7 @@ class Lockstep {
   PerLane kept_;  // c_h c_m
   PerLane active_;
   PerLane rounding_squared_;  // square of the smallest movement that counts as oscillation [m^2]
-  std::optional<ImplicitStep> implicit_;  // for a single rod whose policy uses it
+  std::optional<ImplicitStep> implicit_;  // implicit steps of a single rod whose policy uses them
   std::optional<VerletStep> verlet_;
   ProposedStep proposed_;
   ModeMeasurement measured_modes_;

@@ -111,8 +111,9 @@ Eigen::Matrix3Xd RestSearch::check_rest(const MovingShape& shape) {
     result_.status = RelaxStatus::at_rest;
     return {};
   }
-  // While contacts open and close, the stiffness of one shape is not that of the next. If the signs
-  // were wrong, however, it is better than the estimate that caused them.
+  // While contacts open and close, the stiffness of one shape is not that of the next, so the
+  // measured mode is used only if it is proven or if the rod seemed to be at rest. If the rod
+  // seemed so wrongly, this mode is better than the estimate that caused it.
   if (check.stable && (check.proven || seems_at_rest)) slowest_mode_ = check.slowest_mode;
   // Without a proof, as with a contact that opens and closes, the motion is damped all the same.
   const double nearly = rod_.touches_anything() ? 100 : 1;

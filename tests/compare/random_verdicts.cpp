@@ -47,7 +47,7 @@ using dlo::test::RandomSpace;
 using Points = Eigen::Matrix3Xd;
 
 constexpr double allowed = 0.01;             // tolerance over the length
-constexpr double time_limit = 10;            // of a solve [s]
+constexpr double time_limit = 10;            // time limit of a solve [s]
 constexpr double clearly = 1.1;              // factor on the tolerance of what is certainly wrong
 constexpr double tolerated_failures = 0.01;  // share of right files that may fail
 
@@ -161,7 +161,7 @@ struct Trial {
   char letter;
   std::string what;
   MeasuredShape file;
-  std::vector<std::string> causes = {};  // of which one has to be named
+  std::vector<std::string> causes = {};  // causes, one of which has to be named
 
   [[nodiscard]] bool is_right() const { return letter == 'a' || letter == 'd'; }
 };
@@ -242,7 +242,7 @@ class Verdicts {
       constexpr std::array units = {1e-3, 1e-2, 0.0254, 1e-6};  // [m]
       trial.what = "wrong unit";
       trial.file.points /= units[static_cast<std::size_t>(random.below(4))];
-      trial.file.arc_length.clear();  // which would leave the rod
+      trial.file.arc_length.clear();  // the arc lengths would exceed the rod
       trial.causes = {"the file is in"};
     } else if (kind == 2) {
       Eigen::Vector3d signs = Eigen::Vector3d::Ones();

@@ -90,7 +90,7 @@ TEST(Contact, LyingRodIsThatOfTheElastica) {
   for (const double gamma : {10.0, 100.0, 1e3, 1e4, 1e5}) {
     for (const double height : {0.01, 0.1, 0.3}) {
       const LyingRod exact(gamma, height);
-      if (!(exact.residual < 1e-10) || exact.b > 1) continue;  // its tip touches
+      if (!(exact.residual < 1e-10) || exact.b > 1) continue;  // if b > 1 only the tip touches
       SCOPED_TRACE("Gamma " + std::to_string(gamma) + ", height " + std::to_string(height));
       ++looked;
       const Problem problem = over_floor(gamma, height);

@@ -75,7 +75,7 @@ TEST(Energy, UprightRodStaysUprightBelowSelfBucklingAndFallsTowardsXAbove) {
 
 /// Points of an upright heavy rod, by Runge-Kutta steps from its free end.
 struct ShotFromTheTip {
-  double base_angle = 0;    // from the vertical
+  double base_angle = 0;    // angle at the clamp, from the vertical
   Eigen::Matrix2Xd points;  // at equal arc lengths, across and up
 };
 

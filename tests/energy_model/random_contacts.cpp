@@ -64,7 +64,7 @@ Options read_options(int argc, char** argv) {
 bool is_left_by_polygon(const Problem& problem, const Equilibrium& shape) {
   constexpr Eigen::Index segments = 96;
   constexpr double aside = 0.05;     // in l; polygons of 96 segments are off by less
-  constexpr double falls_by = 0.02;  // of 1 + energy
+  constexpr double falls_by = 0.02;  // decrease of energy divided by 1 + energy
   const dlo::test::PolygonOfRod polygon(problem, shape, segments);
   Eigen::Matrix3Xd forces(3, polygon.points.cols());
   const double energy = polygon_energy(polygon.problem, polygon.points, forces);

@@ -36,7 +36,8 @@ TEST_P(RandomScenes, CompareTheEnergyModelWithMultipleShooting) {
   for (std::uint64_t number = 0; taken < count; ++number) {
     SCOPED_TRACE(number);
     const Problem problem = test::random_problem(number, GetParam());
-    if (problem.weight_per_length.norm() > softest) continue;  // of unit length and stiffness
+    // The rod has unit length and stiffness.
+    if (problem.weight_per_length.norm() > softest) continue;
     ++taken;
     // A search by exact takes a second, and a separate continuation in the twist several seconds.
     // The program dlo_random_scenes makes them for every problem.

@@ -16,7 +16,7 @@ namespace {
 
 using nlohmann::json;
 
-constexpr double tolerance = 1e-8;  // of l, and of EI/l for energies of order one
+constexpr double tolerance = 1e-8;  // divided by l, or by EI/l for energies of order one
 
 Equilibrium solve(const Problem& problem, bool exact) {
   return exact ? solve_exact(problem) : solve_energy(problem);

@@ -168,7 +168,7 @@ TEST_P(BothModels, BucklesOutOfPlaneUnderPrandtlsAndMichellsLoad) {
   // to extrapolate.
   constexpr double weak = 1;
   constexpr double torsion = 0.6;
-  constexpr double first_zero_of_bessel = 2.0062996717894504;  // of J_(-1/4)
+  constexpr double first_zero_of_bessel = 2.0062996717894504;  // first zero of J_(-1/4)
   const double expected = 2 * first_zero_of_bessel * std::sqrt(weak * torsion);
   const Solver& solve = GetParam().second;
   const double one = lateral_buckling_load(solve, weak, torsion, 2e-3, expected);

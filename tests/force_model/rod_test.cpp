@@ -98,7 +98,7 @@ TEST(GripReaction, BalancesTheLoadsAboutAGripperFarFromTheOriginAndAfterItMoved)
       const Eigen::Matrix3Xd points = simulation.points();
       const GripReaction reaction = grip_reactions(simulation.rod(), points).front();
       const GripReaction expected = balancing(simulation.rod(), points, about);
-      EXPECT_GT(expected.torque.norm(), 0.01);  // of 0.12 N on 0.5 m
+      EXPECT_GT(expected.torque.norm(), 0.01);  // a force of 0.12 N acts at 0.5 m
       EXPECT_LT((reaction.force - expected.force).norm(), 1e-7);
       EXPECT_LT((reaction.torque - expected.torque).norm(), 1e-7);
     };
@@ -114,7 +114,7 @@ TEST(GripReaction, BalancesTheLoadsAboutAGripperFarFromTheOriginAndAfterItMoved)
 TEST(GripReaction, OfTwoGripsIsNotCountedTwice) {
   FarWire wire(GripHold::rigid);
   Grip second = wire.rod.grips.front();
-  second.first_point = 1;  // which the first one holds too
+  second.first_point = 1;  // the first grip holds this point too
   wire.rod.grips.push_back(second);
   EXPECT_THROW(check(wire.rod), std::invalid_argument);
   EXPECT_THROW((void)grip_reactions(wire.rod, wire.points), std::invalid_argument);

@@ -60,7 +60,7 @@ TEST_P(StepKernel, LeavesFoldsAndPointsThatCoincideToThePlainForces) {
   const StepOptions options = options_for(stepper, rod);
   const double L = length / (points - 1);
   Eigen::Matrix3Xd folded = random_points(2, points, space);
-  folded.col(6) = folded.col(4);  // there and back
+  folded.col(6) = folded.col(4);  // two segments that coincide
   Eigen::Matrix3Xd sharp = folded;
   sharp(1, 6) += 0.05 * L;  // beyond hooke_fold_angle, but with a direction
   Eigen::Matrix3Xd coincident = folded;

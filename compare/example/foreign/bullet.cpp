@@ -33,7 +33,7 @@ using foreign::Chain;
 using foreign::Quaternion;
 using foreign::Vector;
 
-constexpr double inertia = 1;      // of each body about its end [kg m^2]
+constexpr double inertia = 1;      // moment of inertia of each body about its end [kg m^2]
 constexpr double at_rest = 1e-13;  // turn within a step [rad], at the moment of the highest speed
 
 btVector3 to_bullet(const Vector& v) { return {v[0], v[1], v[2]}; }

@@ -44,7 +44,7 @@ def _draw(ax: Any, panel: dict[str, Any]) -> None:
         if axis["tics"] is not None:
             getattr(ax, f"set_{name}ticks")([at for at, _ in axis["tics"]], [label for _, label in axis["tics"]])
     if ax.name == "3d":
-        # Smaller than its area, which has no space for the names of the axes.
+        # The box is smaller than the area of the plot, to leave space for the names of the axes.
         ax.set_box_aspect([high - low for low, high in (axis["limits"] for axis in panel["axes"])], zoom=0.8)
         ax.locator_params(nbins=5)
     elif panel["equal"]:

@@ -39,7 +39,7 @@ class NpyArray {
  private:
   std::string_view bytes_;
   std::string where_;
-  std::string type_;  // as numpy writes it, such as <f8
+  std::string type_;  // type as NumPy writes it, such as <f8
   std::optional<NumberFormat> format_;
   bool by_columns_ = false;
   std::vector<std::size_t> shape_;

@@ -10,9 +10,11 @@ namespace dlo::compare {
 
 /// Classification of the distance between a chain and a rod.
 enum class ChainError {
-  discretisation,  ///< it has the order of the chain's clamps, or is within the plan's bound
-  too_coarse,      ///< it decreases with shorter segments, but not yet with that order
-  another_shape,   ///< eight times as many segments do not halve it: another shape than the rod
+  /// The distance decreases with the order of the chain's clamps, or is within the plan's bound.
+  discretisation,
+  too_coarse,  ///< the distance decreases with shorter segments, but not yet with that order
+  /// Eight times as many segments do not halve the distance: another shape than the rod.
+  another_shape,
 };
 
 /// Distances of a chain and of the chain with twice as many segments from a rod, both at rest.

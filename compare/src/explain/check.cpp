@@ -72,7 +72,8 @@ void judge_significance(const ShapeCheckOptions& options,
 std::string other_stiffness_within(const CheckResult& result) {
   const EffectiveModulus& modulus = result.check.effective_modulus;
   constexpr double hardly_another = 0.05;
-  const bool is_near = judge(result.check, result.tolerance).passes();  // not only as a chain
+  // The shape passes as the rod, not only as a chain.
+  const bool is_near = judge(result.check, result.tolerance).passes();
   const bool is_significant = result.judgement.significant.value_or(true);
   if (!is_near || !is_significant || !is_identified(modulus.optimum) ||
       std::abs(modulus.ratio - 1) < hardly_another) {

@@ -332,11 +332,11 @@ class Search {
   const MeasuredShape& shape_;
   const ShapeCheck& check_;
   const ShapeCheckOptions& options_;
-  std::vector<Curve> curves_;  // of the rod that was compared, then of other_rods
+  std::vector<Curve> curves_;  // curves of the compared rod, then of other_rods
   AlignOptions align_;
   double before_ = 0;
   int most_numbers_ = std::numeric_limits<int>::max();      // limit of fitted numbers
-  std::vector<std::pair<Explanation, std::string>> found_;  // with their groups
+  std::vector<std::pair<Explanation, std::string>> found_;  // causes with their groups
   std::optional<Explanation> best_;
   /// The shape of a file after correction of the file's errors.
   struct SaidRightly {

@@ -89,7 +89,8 @@ std::vector<Panel> shape_panels(const Drawing& drawing) {
 
 Panel spatial_panel(const Drawing& drawing) {
   const std::vector<Series>& all = drawing.series;
-  constexpr double flattest = 0.6;  // of the longest side, so that the tic labels fit
+  // Smallest side over the longest one, so that the tic labels fit.
+  constexpr double flattest = 0.6;
   Panel panel{.upright = drawing.views.front().up, .equal_aspect = true};
   double longest = 0;
   for (const int axis : {0, 1, 2}) longest = std::max(longest, extent(range_of(all, axis)));
@@ -127,7 +128,7 @@ Panel curvature_panel(const std::vector<Series>& all, bool planar) {
                             .x = series.arc_length,
                             .y = series.curvature});
   }
-  constexpr double rounding = 1e-9;  // of the curvature times the length
+  constexpr double rounding = 1e-9;  // rounding error of the curvature times the length
   if (largest * panel.x.to.value_or(0) < rounding) {
     panel.y.from = -1;
     panel.y.to = 1;

@@ -80,9 +80,10 @@ class ShapeMisfit {
                                // nearest material
   std::map<MaterialPoint, double> values_;
   std::deque<std::shared_ptr<const Solved>> kept_;
-  std::vector<std::size_t> first_like_;  // for each scene: index of the first scene equal to it
-  std::deque<std::shared_ptr<const Solved>> shared_;       // of scenes that are not followed
-  std::vector<std::pair<Unverified, double>> unverified_;  // with their sums of squares [m^2]
+  std::vector<std::size_t> first_like_;  // index of the first scene equal to each scene
+  std::deque<std::shared_ptr<const Solved>> shared_;  // solutions of scenes that are not followed
+  // Unverified shapes with their sums of squares [m^2].
+  std::vector<std::pair<Unverified, double>> unverified_;
 };
 
 /// Sum of squared distances between shapes and rods, as a function of the logarithms of E and, if
@@ -186,7 +187,7 @@ class MaterialErrors {
   double freedom_;  // degrees of freedom, of independent errors
   double fitted_;   // number of fitted numbers, frames included
   std::vector<CorrelationEffect> effects_;
-  double variance_ = 0;  // of one coordinate, for independent errors [m^2]
+  double variance_ = 0;  // variance of one coordinate, for independent errors [m^2]
   double noise_m_ = 0;
   bool tested_ = false;  // whether correlation of errors was tested
   std::optional<CorrelatedErrors> correlation_;

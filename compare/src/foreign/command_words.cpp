@@ -10,7 +10,8 @@ namespace dlo::compare {
 
 std::vector<std::string> command_words(const std::string& command, const std::string& what) {
   constexpr std::string_view blanks = " \t\n";
-  constexpr std::string_view escaped = "\"\\$`";  // by a backslash within double quotes
+  // Characters that a backslash escapes within double quotes.
+  constexpr std::string_view escaped = "\"\\$`";
   const auto fail = [&](const std::string& problem) {
     throw InputError(fmt::format(
         "{}: the command {} {} (allowed: words as a shell takes them, blanks in quotes)", what,
@@ -18,7 +19,7 @@ std::vector<std::string> command_words(const std::string& command, const std::st
   };
   std::vector<std::string> words;
   bool open = false;  // inside a word, which may be empty: ''
-  char quote = '\0';  // that is open, or none
+  char quote = '\0';  // quote that is open; '\0': none
   for (std::size_t i = 0; i < command.size(); ++i) {
     const char c = command[i];
     if (quote == '\0' && blanks.find(c) != std::string_view::npos) {

@@ -330,7 +330,7 @@ std::optional<TrivialShape> trivial_shape(const Scene& scene,
 }
 
 double required_deflection(const Scene& scene, const std::optional<TrivialShape>& trivial) {
-  constexpr double least = 1e-6;  // of the length; a smaller one is not known well enough
+  constexpr double least = 1e-6;  // share of the length; a smaller deflection is too inaccurate
   if (!trivial) {
     throw ConvergenceError(fmt::format(
         "{}: a tolerance of deflection: no equilibrium without weight and loads was found",

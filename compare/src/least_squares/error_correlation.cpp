@@ -52,7 +52,7 @@ Stacked stacked(const std::vector<ResidualSeries>& series) {
 /// ErrorCovariance. The filter's state is the correlated part, with variance `share`.
 struct Whitened {
   Eigen::MatrixXd columns;
-  double log_determinant = 0;  // of the covariance
+  double log_determinant = 0;  // logarithm of the determinant of the covariance
 };
 
 Whitened whitened(Eigen::MatrixXd columns, const std::vector<double>& step,

@@ -262,7 +262,7 @@ class Tracker {
   FrameClock clock_;
   Branch branch_;
   std::optional<ForceTrack> force_;
-  std::vector<double> seconds_;  // of frames that follow a branch
+  std::vector<double> seconds_;  // computing times of frames that follow a branch [s]
   std::vector<double> force_seconds_;
   Track result_;
 };

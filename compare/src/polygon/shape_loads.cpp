@@ -63,7 +63,7 @@ std::vector<Eigen::Vector3d> shape_loads_before(const Scene& scene,
     const energy_model::Samples here = shape.sample(at);
     const Eigen::Vector3d t = here.tangents.col(0).normalized();
     Eigen::Vector3d force = load.force.z() * t;
-    if (here.d1.cols() > 0) {  // or else it follows the tangent alone
+    if (here.d1.cols() > 0) {  // without d1 the load follows the tangent alone
       const Eigen::Vector3d d1 = here.d1.col(0);
       force += load.force.x() * d1 + load.force.y() * t.cross(d1);
     }

@@ -199,7 +199,7 @@ struct SceneTemplate::Parsed {
   std::string name;
   std::vector<Material> materials;
   MissingElements missing;
-  std::filesystem::path folder;  // of the files that fields name; empty if `name` has it
+  std::filesystem::path folder;  // folder of the files that fields name; empty if `name` has it
   // EI, or the mean to which GJ is proportional, with the values of the file. Empty if GJ is not
   // given, or if the file is not a valid scene without other values.
   std::optional<double> bending_stiffness;

@@ -27,7 +27,7 @@ class Aligner {
   /// The file's points by growing arc length, for one direction in which the file may run.
   struct Way {
     Eigen::Matrix3Xd points;
-    std::vector<double> arc_length;  // as given, or an estimate along the polyline
+    std::vector<double> arc_length;  // arc lengths as given, or an estimate along the polyline
   };
   struct Placed {
     RigidMotion pose;
@@ -69,7 +69,7 @@ class Aligner {
   double length_;
   AlignOptions options_;
   ArcLengths rule_ = ArcLengths::nearest;
-  bool is_whole_ = false;      // as long as the rod, within whole_slack
+  bool is_whole_ = false;      // the polyline is as long as the rod, within whole_slack
   bool has_rod_ends_ = false;  // as long as the rod within end_slack: its ends are those of the rod
   std::array<Way, 2> ways_;    // file runs along the rod, against it
 };

@@ -21,7 +21,7 @@ constexpr double significant_chance = 0.05;
 /// weighted sum of squared distances from it.
 struct Spread {
   double squares = 0;
-  double precision = 0;  // of the mean
+  double precision = 0;  // inverse variance of the mean
 };
 
 Spread spread(const std::vector<ShapeEstimate>& estimates, double between) {

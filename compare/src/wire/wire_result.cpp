@@ -158,7 +158,7 @@ class WireIntervals {
   const WireProblem& problem_;
   WireOptimum& optimum_;
   const Scene& scene_;
-  double widening_ = 1;  // of intervals, relative to those of the deviance alone
+  double widening_ = 1;  // width of intervals over that of the deviance alone
 };
 
 /// Returns the values of the numbers; rounding of those that no shape depends on is set to zero.

@@ -155,9 +155,9 @@ class SpanDynamics {
   SpanReach points_;
   ContactGrid grid_;
   Eigen::Index constraints_ = 0, axes_ = 3;
-  Eigen::VectorXd elastic_;                 // by unknown; 0 for a free start's rotation, else 1
-  Eigen::VectorXd twist_inertia_;           // by unknown; 0 except for twist; empty without twist
-  std::vector<Eigen::Index> held_;          // point of each grip beyond the first
+  Eigen::VectorXd elastic_;         // one per unknown: 0 for a free start's rotation, else 1
+  Eigen::VectorXd twist_inertia_;   // by unknown; 0 except for twist; empty without twist
+  std::vector<Eigen::Index> held_;  // point of each grip beyond the first
   std::vector<std::vector<double>> signs_;  // PositionOperator::signs() of each of these grips
   // Quantities of the points; forces along the span's frame.
   Eigen::VectorXd masses_;

@@ -136,7 +136,7 @@ std::optional<HeldFrames> frames_of(const Problem& problem, const OrderedGrip& s
   // The first clamp of a rod with material directors holds them with or without a frame.
   Grip first = *start.grip;
   if (!first.frame) first.frame = FrameHold{};
-  // Mean GJ: that of a uniform rod with the same torsional stiffness.
+  // Mean GJ between the clamps: GJ of a uniform rod with the same torsional compliance.
   const double mean =
       (end.at - first.at) / torsional_compliance(rod_parts(problem), first.at, end.at);
   return HeldFrames{.stiffness = mean / bending_unit(problem),

@@ -37,7 +37,7 @@ class FrameHessian {
   // Buffers of one panel. Rows of curvatures_ and beyond_ are symmetric 3 x 3 matrices of a node:
   // xx, yy, zz, xy, xz, yz.
   Eigen::Matrix<double, Eigen::Dynamic, 6> curvatures_, beyond_;
-  std::array<Eigen::MatrixX3d, 3> adjoints_, turns_;  // by field
+  std::array<Eigen::MatrixX3d, 3> adjoints_, turns_;  // one matrix per field
   Eigen::MatrixXd pairs_, by_node_, own_;
   // Buffers for the coupling with earlier panels.
   Eigen::MatrixXd before_;

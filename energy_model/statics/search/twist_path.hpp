@@ -16,8 +16,9 @@ struct EndFrame {
 /// A shape of a span without prescribed twist, planar or not.
 struct UntwistedShape {
   const SpanSolution& solution;
-  Eigen::Vector3d end_d1;  ///< transported from Span::first_d1() at its start
-  double twist;            ///< twist of a rod with material directors; else 0 [rad]
+  /// d1 at the end, transported without twist from Span::first_d1() at the start
+  Eigen::Vector3d end_d1;
+  double twist;  ///< twist of a rod with material directors; else 0 [rad]
   std::optional<Writhe> writhe;
 };
 

@@ -96,7 +96,7 @@ class ContactRows {
   PositionOperator reach_;
   // For rows that are linear in the tangents; zero for others.
   Eigen::MatrixXd linear_;   // weight times phi, nodes x rows
-  Eigen::Matrix3Xd normal_;  // by row
+  Eigen::Matrix3Xd normal_;  // normals, one per row
   Eigen::VectorXd offset_;
 };
 

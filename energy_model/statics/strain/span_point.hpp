@@ -31,8 +31,8 @@ struct SpanPoint {
   // Scratch
   Eigen::MatrixX3d carried;  // `force` plus the forces of grips and contacts
   Eigen::VectorXd along, by_unknown;
-  std::vector<Eigen::Vector3d> couples;     // by piece
-  std::vector<Eigen::Matrix3d> curvatures;  // by piece
+  std::vector<Eigen::Vector3d> couples;     // one per element
+  std::vector<Eigen::Matrix3d> curvatures;  // one per element
   FrameHessian frame_hessian;
 
   /// Tangents at the nodes, 3 x nodes.

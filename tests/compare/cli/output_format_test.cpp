@@ -108,7 +108,7 @@ TEST_F(Output, NoNumberIsNanOrInfinity) {
     const Outcome text = bash("$dlo " + command);
     EXPECT_EQ(wrong_word(text.out + text.err), "") << command << "\n" << text.out;
   }
-  EXPECT_GT(empty, 10);  // or nothing of this was tried
+  EXPECT_GT(empty, 10);  // otherwise the loop has tested nothing
   // The first commands of a new user, with any material: thin rods are soft, thick ones stiff.
   std::size_t index = 0;
   for (const dlo::compare::Material& material : dlo::compare::materials()) {
@@ -154,8 +154,8 @@ TEST(Shown, IsZeroBelowTheErrorOfTheData) {
     EXPECT_FALSE(std::signbit(shown(rounding, 1)));
   }
   for (const double number : {1.1e-9, -2e-9, 3.0}) EXPECT_EQ(shown(number, 1), number);
-  EXPECT_EQ(shown(1e-12, 1e-6), 1e-12);  // of a small scene
-  EXPECT_EQ(shown(1e-12, 0), 1e-12);     // of one without a size
+  EXPECT_EQ(shown(1e-12, 1e-6), 1e-12);  // the scale of the scene is small
+  EXPECT_EQ(shown(1e-12, 0), 1e-12);     // the scene has no scale
   EXPECT_TRUE(std::isnan(shown(NAN, 1)));
   EXPECT_EQ(shown(INFINITY, 1), INFINITY);
   // A taut rod's forces are large compared with its weight.

@@ -47,7 +47,8 @@ class RegressCommand : public dlo::test::Command {
 TEST_F(RegressCommand, MayTolerateAShareOfTheDeflection) {
   const std::string check = "check " + steel() + " --tolerance '1% of deflection' --shape " +
                             solved_file(steel() + " --samples 21");
-  const double deflection = json_of(check).at("deflection_m").get<double>() / 0.5;  // of l
+  // Divided by the length.
+  const double deflection = json_of(check).at("deflection_m").get<double>() / 0.5;
   const double tip =
       json_of(arguments_ + steel()).at("cases")[0].at("measured").at("tip_over_length");
   const auto grown_by = [&](double shares_of_deflection) {

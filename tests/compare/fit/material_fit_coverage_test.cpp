@@ -19,10 +19,10 @@ namespace {
 
 /// Statistics of fits to one rod.
 struct Tally {
-  int held = 0;         // intervals that hold the truth
-  int told = 0;         // fits that tell E
-  int correlated = 0;   // that say that errors are correlated
-  double farthest = 0;  // |log(E / truth)| of those that tell it
+  int held = 0;         // intervals that contain the true value
+  int told = 0;         // fits that identify E
+  int correlated = 0;   // fits that report correlated errors
+  double farthest = 0;  // largest |log(E / truth)| of the fits that identify E
 };
 
 /// Counts the results of `draws` fits of `scene`, each to a new shape from seen(), against the true

@@ -20,11 +20,11 @@
 namespace dlo::compare {
 namespace {
 
-constexpr double marker_noise = 1e-3;  // of a coordinate [m]
+constexpr double marker_noise = 1e-3;  // standard deviation of a coordinate [m]
 
 /// Recording with the parameters of its simulation.
 struct Recording {
-  Scene scene;  // of which the fit knows no EI
+  Scene scene;  // scene whose EI the fit does not know
   double stiffness = 0;
   RodDamping damping;
   MarkerMotion motion;

@@ -350,7 +350,7 @@ double nearest_delay(const std::vector<Eigen::Matrix3Xd>& leader,
                      const std::vector<Eigen::Matrix3Xd>& follower, double frame_time) {
   double least = std::numeric_limits<double>::infinity();
   double delay = 0;
-  const double longest = 0.5 * static_cast<double>(leader.size());  // of shifts, frames
+  const double longest = 0.5 * static_cast<double>(leader.size());  // largest shift [frames]
   for (double shift = 0; shift < longest; shift += 0.01) {
     double sum = 0;
     for (std::size_t i = 0; i < leader.size(); ++i) {

@@ -60,7 +60,7 @@ TEST_F(Record, ANumberOfAShapeStandsInEachCommandsOutput) {
     ++places;
   }
   EXPECT_GE(places, 3);
-  // Half a turn is held, part of which is writhe.
+  // The clamps prescribe half a turn, part of which becomes writhe.
   EXPECT_NEAR(solved.at("link_turns"), 0.5, 1e-3);
   EXPECT_NEAR(solved.at("twist_turns").get<double>() + solved.at("writhe_turns").get<double>(), 0.5,
               1e-3);

@@ -73,7 +73,7 @@ void displace(MarkerMotion& motion, const Eigen::Vector3d& by) {
 }
 
 const std::vector<double> five = {0.07, 0.15, 0.23, 0.31, 0.39};
-constexpr double close_to_rod = 1e-5;  // what is between frames [m]
+constexpr double close_to_rod = 1e-5;  // error of interpolation between frames [m]
 /// Damping that makes a rod with inertia nearly quasi-static, in few steps, for tests of other
 /// properties.
 constexpr RodDamping slow{.material = 0.2};

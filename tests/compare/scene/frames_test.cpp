@@ -71,7 +71,7 @@ TEST(Frames, AQuaternionTurnsTheAxesIntoTheDirectors) {
       rod + gripper(0, "direction = 0\nroll = 0\n") +
       gripper(0.5, "quaternion = [" + std::to_string(q.w()) + ", " + std::to_string(q.x()) + ", " +
                        std::to_string(q.y()) + ", " + std::to_string(q.z()) + "]\nturns = 1\n");
-  const Gripper clamp = read(text).grippers.at(1);  // of six decimals
+  const Gripper clamp = read(text).grippers.at(1);  // its numbers have six decimals
   EXPECT_LT((*clamp.direction - q * Vector3d::UnitZ()).norm(), 3e-6);
   EXPECT_LT((*clamp.frame->d1 - q * Vector3d::UnitX()).norm(), 3e-6);
   EXPECT_NEAR(clamp.frame->d1->norm(), 1, 1e-15);
@@ -96,7 +96,7 @@ TEST(Frames, OneFrameAloneNeedsNothing) {
 
 struct BadFrame {
   std::string text;
-  std::vector<std::string> named;  // what the message has to name
+  std::vector<std::string> named;  // texts that the message has to contain
 };
 
 TEST(Frames, ErrorsNameFileLineKeyAndWhatIsAllowed) {

@@ -76,7 +76,7 @@ TEST(Mjcf, HingesFramesAndRadiansAreRead) {
   expect_near(scene.length, 16 * 0.04);
   expect_near(scene.bending_stiffness(), 0.05 * 0.04);
   EXPECT_FALSE(scene.torsional_stiffness);
-  expect_near(scene.mass(), 16 * 0.0016);  // of inertial, not of the geoms
+  expect_near(scene.mass(), 16 * 0.0016);  // mass of the inertials, not of the geoms
   EXPECT_EQ(scene.grippers.at(0).position, Eigen::Vector3d(0.2, 0, 1.5));
   const Eigen::Vector3d upwards(std::cos(pi / 6), 0, std::sin(pi / 6));
   EXPECT_LT((*scene.grippers[0].direction - upwards).norm(), 1e-9);

@@ -66,7 +66,7 @@ TEST(Scene, DerivesTheNumbersOfTable5) {
 
 struct BadScene {
   std::string text;
-  std::vector<std::string> named;  // what the message has to name
+  std::vector<std::string> named;  // texts that the message has to contain
 };
 
 TEST(Scene, ErrorsNameFileLineKeyValueAndWhatIsAllowed) {

@@ -233,7 +233,7 @@ force_model = { law = "hooke", bookkeeping = "consistent" }
   EXPECT_NEAR(energy.tension.back(), energy.contacts[0].force.dot(tip.normalized()),
               2e-2 * energy.contacts[0].force.norm());
   // The deviation of the force model decreases with the square of the segment length.
-  const SolveOptions patient{.time_limit = 300};  // of sanitizers
+  const SolveOptions patient{.time_limit = 300};  // sanitizer builds need this time
   scene.force_model.points = 12;
   const double coarse = compare(scene, patient).deviation.rms_over_length;
   scene.force_model.points = 24;

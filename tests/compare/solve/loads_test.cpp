@@ -170,7 +170,7 @@ tangential_drag = 0.02
   // The drag is 1/2 rho C_n d v^2 across the rod, and 1/2 rho C_t pi d v^2 along it.
   EXPECT_NEAR(scene.drag->force({0, 1, 0}).x(), 0.5 * 1000 * 1.2 * 0.01, 1e-12);
   EXPECT_NEAR(scene.drag->force({1, 0, 0}).x(), 0.5 * 1000 * 0.02 * std::numbers::pi * 0.01, 1e-12);
-  EXPECT_EQ(scene.distributed_loads.size(), 1U);  // and bears it
+  EXPECT_EQ(scene.distributed_loads.size(), 1U);  // the buoyancy of the medium
   const auto refused = [](const std::string& medium, const std::vector<std::string>& parts) {
     EXPECT_TRUE(
         says(test::scene_error(thick_rod_held + "[medium]\ndensity = 1000\n" + medium), parts));

@@ -62,7 +62,7 @@ Shape without_clamps(Shape chain, double h) {
 
 struct Third {
   Eigen::Matrix3Xd points;
-  double error = 0;  // what its last extrapolation has changed, largest [m]
+  double error = 0;  // largest change of a point by the last extrapolation [m]
 };
 
 /// Extrapolates three chains by Neville's scheme in h^2 to h = 0.
@@ -112,7 +112,7 @@ TEST_P(ThirdMethod, IsWithinTheBoundOfTheAnswerAndItsOwnError) {
     most = std::max(most, (third.points.col(static_cast<Eigen::Index>(i)) - known).norm());
   }
   const double length = scene.scene.length;
-  constexpr double decimals = 2e-12;  // that the file has
+  constexpr double decimals = 2e-12;  // rounding of the written decimals
   EXPECT_LE(most, answer["points_bound_m"].get<double>() + 2 * third.error + decimals);
   EXPECT_LT(third.error, GetParam().own_error * length);
 }

@@ -21,11 +21,15 @@ using compare::Scene;
 inline constexpr double one_degree = std::numbers::pi / 180;
 inline constexpr double said_stiffness = 1e-3;         // EI of the scenes [N m^2]
 inline constexpr double camera_tilt = 2 * one_degree;  // standard deviation, one of all mountings
-inline constexpr double fixture_error = 20 * one_degree;  // of a clamp, one of all mountings
-inline constexpr double own_error = 5 * one_degree;       // of a clamp, each mounting's own
-inline constexpr double curvature = 2;                    // of a term of natural curvature [1/m]
-inline constexpr double point_error = 0.003;              // of a coordinate, correlated [m]
-inline constexpr double error_length = 0.2;               // of the length
+// Standard deviation of the clamp error shared by all mountings.
+inline constexpr double fixture_error = 20 * one_degree;
+// Standard deviation of the clamp error of each mounting.
+inline constexpr double own_error = 5 * one_degree;
+inline constexpr double curvature = 2;  // standard deviation of a term of natural curvature [1/m]
+// Standard deviation of a coordinate; errors are correlated [m].
+inline constexpr double point_error = 0.003;
+// Correlation length of the errors, divided by the rod length.
+inline constexpr double error_length = 0.2;
 
 inline Scene said_scene(double EI) {
   Scene scene;
