@@ -151,8 +151,7 @@ class ChainFinder {
     segment.end = i + 1 < bodies.size() ? place_in(bodies[i + 1], bodies[i]) : last_end(segment);
     constexpr double shortest = 1e-9;
     if (!(segment.length() > shortest)) {
-      fail(segment,
-           "has no length: the next joint is at the same position (allowed: another position)");
+      fail(segment, "has no length: the next joint is at the same position (allowed: apart)");
     }
     chain_.length += segment.length();
     chain_.segments.push_back(segment);
@@ -200,9 +199,7 @@ class ChainFinder {
     }
     if (off_middle_ > 1e-2) {
       chain_.notes.push_back(fmt::format(
-          "the mass of each segment is distributed uniformly; in the model its centre is up to "
-          "{:.2g} segment lengths off the middle",
-          off_middle_));
+          "mass of segments made uniform: centres move up to {:.2g} segment lengths", off_middle_));
     }
   }
 

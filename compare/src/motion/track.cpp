@@ -171,11 +171,10 @@ class Tracker {
     frame.released_bound = passage.released_bound;
     if (passage.kept) return true;
     if (frame.released < -frame.released_bound) {
-      return stop(
-          frame.time,
-          fmt::format("the solver left its branch: the energy of the shape is {:.3g} J higher than "
-                      "the work allows; a higher frame rate may keep the branch",
-                      -frame.released));
+      return stop(frame.time,
+                  fmt::format("the solver left its branch: the energy is {:.3g} J higher than "
+                              "the work allows; a higher frame rate may keep the branch",
+                              -frame.released));
     }
     if (branch_.balances() && !(frame.released > frame.released_bound)) return true;
     TrackEvent event;

@@ -209,9 +209,8 @@ std::vector<std::string> findings(const MovingReport& report) {
       "other (Fig. 4) and the counts depend on rounding.",
       "Table 3 is not reproduced by any distance: each of its rows requires another one. It "
       "repeats the counts 112878 and 963 of Table 4 for the hanging rod, but prints another force.",
-      "\"static\" in Table 2 has counts of c_s and d_m, which Formula 7 does not contain, so "
-      "it is another stepper. As the text states, `basic` and `relative` give the same movement as "
-      "long as no limit is reached.",
+      "\"static\" in Table 2 has counts of c_s and d_m, which Formula 7 lacks: it is another "
+      "stepper. As the text states, `basic` and `relative` are equal until a limit is reached.",
       "Filled in: the gripper holds the third and the fourth point, its targets move at 1 kHz; the "
       "rod starts straight along the gripper; segments of l/(N-1); Formula 4 with the signs that "
       "balance; the sideways movements begin at 5 s as the rotation does.",

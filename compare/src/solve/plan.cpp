@@ -275,8 +275,7 @@ void bound_by_shape(const Scene& scene, const PlanOptions& options, const Looked
   } else if (const std::string none = why_no_polygon(scene); !none.empty()) {
     items.bounds.set_unbounded(none);
   } else if (!fine) {
-    items.bounds.set_unbounded(
-        "the grips are closer together than the points of the finest polygon tried");
+    items.bounds.set_unbounded("the grips are closer than points of the finest polygon tried");
   } else {
     bound_by_response(scene, *rod, *fine, items.bounds);
     plan.points = points_for_target(scene, *rod, options.target, time);

@@ -165,18 +165,14 @@ std::vector<HardCase> hard_rods() {
       make("Gamma = 1e3", "a rope: bending matters at the clamp only", horizontal(1e3)));
   cases.push_back(make("Gamma = 1e5", "all bending in one joint", horizontal(1e5)));
   const Eigen::Vector3d up(0, 1, 0);
-  cases.push_back(make("upright, 3 % below buckling",
-                       "the upright shape is just stable; starts bent",
+  cases.push_back(make("upright, 3 % below buckling", "upright shape just stable; starts bent",
                        steel_rod(0.97 * self_buckling, up)));
   cases.back().start = arc(cases.back(), pi / 8);
-  cases.push_back(make("upright, 3 % above buckling",
-                       "the upright shape is just unstable; starts there",
+  cases.push_back(make("upright, 3 % above buckling", "upright shape just unstable; starts there",
                        steel_rod(1.03 * self_buckling, up)));
   cases.push_back(make("N = 5", "as few points as the paper allows", horizontal(2), 5));
-  cases.push_back(make("N = 200", "largest eigenvalue of the stiffness 1e9 times the smallest",
-                       horizontal(2), 200));
-  cases.push_back(make("N = 1000", "largest eigenvalue of the stiffness 1e12 times the smallest",
-                       horizontal(2), 1000));
+  cases.push_back(make("N = 200", "condition number of the stiffness: 1e9", horizontal(2), 200));
+  cases.push_back(make("N = 1000", "condition number of the stiffness: 1e12", horizontal(2), 1000));
 
   cases.push_back(unequal_segments());
   cases.push_back(papers_rod());

@@ -98,8 +98,7 @@ struct Choices<StretchDecision> {
       {StretchDecision::given, "given", "the scene states it"},
       {StretchDecision::counted, "counted", "stretch exceeds the target error"},
       {StretchDecision::below_target, "below_target", "stretch is below the target error"},
-      {StretchDecision::not_modelled, "not_modelled",
-       "stretch matters, but the model neglects it"}};
+      {StretchDecision::not_modelled, "not_modelled", "stretch matters, the model neglects it"}};
 };
 
 /// Twist and writhe of an interval of the rod between clamps that hold frames, in turns. The writhe
