@@ -10,8 +10,8 @@
 namespace dlo::test {
 
 /// Whether a text has each of these parts; if not, which it lacks.
-inline testing::AssertionResult says(const std::string& text,
-                                     const std::vector<std::string>& parts) {
+inline testing::AssertionResult has_all(const std::string& text,
+                                        const std::vector<std::string>& parts) {
   for (const std::string& part : parts) {
     if (text.find(part) == std::string::npos) {
       return testing::AssertionFailure() << "no \"" << part << "\" in " << text;
@@ -21,8 +21,8 @@ inline testing::AssertionResult says(const std::string& text,
 }
 
 /// Whether a text has none of these parts; if not, which it has.
-inline testing::AssertionResult says_none(const std::string& text,
-                                          const std::vector<std::string>& parts) {
+inline testing::AssertionResult has_none(const std::string& text,
+                                         const std::vector<std::string>& parts) {
   for (const std::string& part : parts) {
     if (text.find(part) != std::string::npos) {
       return testing::AssertionFailure() << "\"" << part << "\" in " << text;

@@ -36,19 +36,19 @@ namespace {
 
 /// Time of the steady clock at which the command has to end [s]; infinite: never.
 std::atomic<double> command_end = std::numeric_limits<double>::infinity();
-std::string over_message;  // message of the signal handler, written before the timer starts
+std::string time_limit_message;  // message of the signal handler, written before the timer starts
 
 double steady_seconds() {
   return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
 }
 
-bool is_command_over() { return steady_seconds() > command_end; }
+bool is_time_limit_exceeded() { return steady_seconds() > command_end; }
 
-extern "C" void end_command_over_time(int /*number*/) {
+extern "C" void end_command_at_time_limit(int /*number*/) {
   compare::end_groups();
   // If standard error cannot be written, the exit status still reports it.
   [[maybe_unused]] const ssize_t written =
-      ::write(STDERR_FILENO, over_message.data(), over_message.size());
+      ::write(STDERR_FILENO, time_limit_message.data(), time_limit_message.size());
   ::_exit(static_cast<int>(ExitStatus::not_converged));
 }
 
@@ -56,20 +56,21 @@ extern "C" void end_command_over_time(int /*number*/) {
 /// the computation does not stop soon after that, the process ends with a message.
 class CommandTimeLimit {
  public:
-  CommandTimeLimit(const std::string& command, double seconds) : interruption_(is_command_over) {
+  CommandTimeLimit(const std::string& command, double seconds)
+      : interruption_(is_time_limit_exceeded) {
     command_end = steady_seconds() + seconds;
     if (RedirectedOutput::current() != nullptr) return;  // a library call must not end its process
-    over_message = fmt::format(
+    time_limit_message = fmt::format(
         "dlo: {}: not finished within --time-limit {:g} s (allowed: a longer time limit, or a "
         "smaller scene)\n",
         command, seconds);
     struct sigaction action = {};
-    action.sa_handler = end_command_over_time;
+    action.sa_handler = end_command_at_time_limit;
     ::sigfillset(&action.sa_mask);
     ::sigaction(SIGALRM, &action, nullptr);
-    constexpr double grace = 1.05;
+    constexpr double tolerance_factor = 1.05;
     constexpr double grace_seconds = 0.5;
-    start_timer(grace * seconds + grace_seconds);
+    start_timer(tolerance_factor * seconds + grace_seconds);
   }
   ~CommandTimeLimit() {
     start_timer(0);
@@ -177,7 +178,7 @@ int run_command(std::vector<std::string> words, std::string& out, std::string& e
 
 ExitStatus report_exception() {
   const auto say_error = [](const std::exception& error, ExitStatus status) {
-    say("{}", error.what());
+    print_message("{}", error.what());
     return status;
   };
   try {
@@ -201,9 +202,9 @@ ExitStatus report_exception() {
     // A container was requested that exceeds its largest size.
     write_standard_error("dlo: out of memory\n");
   } catch (const std::system_error& error) {
-    say("out of threads or memory ({})", error.what());
+    print_message("out of threads or memory ({})", error.what());
   } catch (const std::exception& error) {
-    say("internal error: {}", error.what());
+    print_message("internal error: {}", error.what());
   } catch (...) {
     write_standard_error("dlo: internal error\n");
   }

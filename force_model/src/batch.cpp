@@ -53,7 +53,7 @@ Batch::~Batch() = default;
 std::size_t Batch::blocks() const { return blocks_.size(); }
 
 void Batch::step_block(std::size_t block, long count) {
-  Lockstep& lockstep = blocks_.at(block);
+  BatchBlock& lockstep = blocks_.at(block);
   std::array<StepResult, rods_per_block> results;
   for (long i = 0; i < count && lockstep.any_active(); ++i) {
     lockstep.step(results);
@@ -69,7 +69,7 @@ void Batch::step(long count) {
 }
 
 std::vector<RelaxResult> Batch::relax_block(std::size_t block, const RelaxOptions& options) {
-  Lockstep& lockstep = blocks_.at(block);
+  BatchBlock& lockstep = blocks_.at(block);
   std::vector<RelaxResult> results = lockstep.relax(options);
   for (std::size_t rod = 0; rod < lockstep.size(); ++rod) {
     if (results[rod].status == RelaxStatus::diverged) lockstep.set_active(rod, false);
@@ -93,7 +93,7 @@ void Batch::move_grip(std::size_t rod, std::size_t grip,
   blocks_[rod / rods_per_block].move_grip(rod % rods_per_block, grip, targets, reference);
 }
 
-const Lockstep& Batch::block_of(std::size_t index) const {
+const BatchBlock& Batch::block_of(std::size_t index) const {
   require(index < size_, "Batch", "rod", static_cast<double>(index),
           "smaller than the number of rods");
   return blocks_[index / rods_per_block];

@@ -67,7 +67,7 @@ double signed_turn(const Eigen::Vector3d& a, const Eigen::Vector3d& b) {
 }
 
 /// Returns a vector of the plane z = 0, rotated to the left by a right angle.
-Eigen::Vector3d left_of(const Eigen::Vector3d& vector) { return {-vector.y(), vector.x(), 0}; }
+Eigen::Vector3d rotated_left(const Eigen::Vector3d& vector) { return {-vector.y(), vector.x(), 0}; }
 
 double turning_angle(const Eigen::Vector3d& a, const Eigen::Vector3d& b) {
   return std::atan2(a.cross(b).norm(), a.dot(b));
@@ -162,8 +162,8 @@ void add_bending_forces(const Points& points, const Eigen::Ref<const Eigen::Vect
                                                          : hooke_forces(stiffness / L, u, a, v, b);
     if (bending.natural_turns.size() > 0) {
       const double couple = natural_moment(bending, i, L);
-      joint.on_previous += couple / a * left_of(u);
-      joint.on_next += couple / b * left_of(v);
+      joint.on_previous += couple / a * rotated_left(u);
+      joint.on_next += couple / b * rotated_left(v);
     }
     forces.col(i - 1) += joint.on_previous;
     forces.col(i + 1) += joint.on_next;

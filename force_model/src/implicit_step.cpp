@@ -19,14 +19,14 @@ constexpr int most_newton_steps = 64;
 constexpr double largest_turn = 1;
 /// A segment shorter than this fraction of its rest length has no reliable direction. Its rotation
 /// is computed as if it had this length.
-constexpr double shortest_turned = 0.25;
+constexpr double least_direction_length = 0.25;
 /// Fraction of the rest length to which shorter segments are opened, so that they have a direction.
-constexpr double opened = 1e-3;
+constexpr double least_open_fraction = 1e-3;
 /// Limit of compression in the transverse stiffness, in units of c_c / L. More compression occurs
 /// only in initial shapes, and would make the stiffness indefinite.
-constexpr double most_pressed = 0.01;
+constexpr double largest_compression = 0.01;
 /// Required fraction of the decrease that the quadratic model predicts.
-constexpr double sufficient = 0.05;
+constexpr double armijo_share = 0.05;
 /// Largest number of solves in the search for the points that touch walls. If the set is not found,
 /// the last one is used until the next step.
 constexpr int most_active_set_iterations = 30;
@@ -85,20 +85,21 @@ ImplicitStep::ImplicitStep(const Rod& rod, const Eigen::Matrix3Xd& points,
   inertia_ = masses_ * (1 + damping_rate_ * time_step_) / time_step_;
 }
 
-/// Opens segments that are shorter than `opened`, in the direction of contraction forces: each
-/// along the chord from the point before it to the point after it. The points after it, up to the
-/// next held point, move along.
+/// Opens segments that are shorter than `least_open_fraction`, in the direction of contraction
+/// forces: each along the chord from the point before it to the point after it. The points after
+/// it, up to the next held point, move along.
 void ImplicitStep::open_segments(const Rod& rod) {
   const Eigen::Index last = points_.cols() - 1;
   for (Eigen::Index i = 0; i < last; ++i) {
-    const double least = opened * rod.rest_lengths[i];
+    const double least = least_open_fraction * rod.rest_lengths[i];
     if ((points_.col(i + 1) - points_.col(i)).norm() >= least) continue;
     const Eigen::Vector3d chord =
         points_.col(std::min(i + 2, last)) - points_.col(std::max<Eigen::Index>(i - 1, 0));
-    const Eigen::Vector3d way = chord.norm() > 0 ? Eigen::Vector3d(least / chord.norm() * chord)
-                                                 : Eigen::Vector3d(least, 0, 0);
+    const Eigen::Vector3d displacement = chord.norm() > 0
+                                             ? Eigen::Vector3d(least / chord.norm() * chord)
+                                             : Eigen::Vector3d(least, 0, 0);
     for (Eigen::Index k = i + 1; k <= last && is_free_[static_cast<std::size_t>(k)] != 0; ++k) {
-      points_.col(k) += way;
+      points_.col(k) += displacement;
     }
   }
 }
@@ -109,8 +110,9 @@ double ImplicitStep::potential(const Rod& rod, const Eigen::Matrix3Xd& points) c
   double result = energy(rod, points).total();
   for (Eigen::Index i = 0; i < inertia_.size(); ++i) {
     if (is_free_[static_cast<std::size_t>(i)] == 0) continue;
-    const Eigen::Vector3d way = points.col(i) - start_.col(i);
-    result += inertia_[i] / 2 * way.squaredNorm() - masses_[i] * velocities_.col(i).dot(way);
+    const Eigen::Vector3d displacement = points.col(i) - start_.col(i);
+    result += inertia_[i] / 2 * displacement.squaredNorm() -
+              masses_[i] * velocities_.col(i).dot(displacement);
   }
   return result;
 }
@@ -124,7 +126,7 @@ void ImplicitStep::assemble(const Rod& rod) {
     }
   }
   stiffness_.set_zero();
-  add_segments(rod, points_, most_pressed, stiffness_);
+  add_segments(rod, points_, largest_compression, stiffness_);
   add_joints(rod, points_, stiffness_);
   add_springs(rod, points_, stiffness_);
   for (Eigen::Index i = 0; i < inertia_.size(); ++i) {
@@ -160,12 +162,12 @@ bool ImplicitStep::solve(const Rod& rod) {
   for_each_wall_point(rod, [this](const Wall& wall, Eigen::Index i, char& touches) {
     const double depth = (wall.point - points_.col(i)).dot(wall.normal);
     touches = depth > 0 ? 1 : 0;
-    if (depth > 0) press(wall, i, depth, 1);
+    if (depth > 0) add_wall_contribution(wall, i, depth, 1);
   });
   walls_energy_ = 0;  // the present contact energy is already part of energy_
   for (int iteration = 0; iteration < most_active_set_iterations; ++iteration) {
     ++newton_steps_;
-    lead_held_points(rod);
+    set_held_movements(rod);
     if (!factor_.compute(stiffness_, is_free_, shift_) || !solve_linear()) return false;
     bool changed = false;
     for_each_wall_point(rod, [&](const Wall& wall, Eigen::Index i, char& touches) {
@@ -174,7 +176,7 @@ bool ImplicitStep::solve(const Rod& rod) {
       if (will == touches) return;
       touches = will;
       changed = true;
-      press(wall, i, depth, will != 0 ? 1 : -1);
+      add_wall_contribution(wall, i, depth, will != 0 ? 1 : -1);
     });
     if (!changed) break;
   }
@@ -182,7 +184,8 @@ bool ImplicitStep::solve(const Rod& rod) {
 }
 
 /// Adds the contribution of a wall on a point to the quadratic model, or removes it (sign = -1).
-void ImplicitStep::press(const Wall& wall, Eigen::Index i, double depth, double sign) {
+void ImplicitStep::add_wall_contribution(const Wall& wall, Eigen::Index i, double depth,
+                                         double sign) {
   const double stiffness = sign * wall.stiffness;
   stiffness_.add(i, i, stiffness * wall.normal * wall.normal.transpose());
   forces_.col(i) += stiffness * depth * wall.normal;
@@ -200,7 +203,7 @@ double ImplicitStep::search(const Rod& rod, bool gripper_moves) {
     const Eigen::Vector3d d = movement_.col(i + 1) - movement_.col(i);
     const double square = a.squaredNorm();
     const Eigen::Vector3d across = square > 0 ? Eigen::Vector3d(d - a.dot(d) / square * a) : d;
-    const double L = shortest_turned * rod.rest_lengths[i];
+    const double L = least_direction_length * rod.rest_lengths[i];
     turn = std::max(turn, across.squaredNorm() / std::max(square, L * L));
   }
   double share = std::min(1.0, largest_turn / std::sqrt(std::max(turn, 1e-300)));
@@ -208,14 +211,15 @@ double ImplicitStep::search(const Rod& rod, bool gripper_moves) {
   for (int halving = 0; halving <= most_halvings; ++halving, share /= 2) {
     retraction_.move(points_, movement_, share, trial_);
     const double moved = potential(rod, trial_);
-    const double promised = energy_ + share * (walls_energy_ - slope + share / 2 * curvature);
+    const double predicted_energy =
+        energy_ + share * (walls_energy_ - slope + share / 2 * curvature);
     const double rounding = energy_rounding * (std::abs(energy_) + energy_unit_);
     // If no gripper moves, the model's decrease is share * `decrease`. With walls the model is
     // exact only at 0 and 1; between them it is convex, so that its chord is an upper bound.
     const double decrease = slope - walls_energy_ - share / 2 * curvature;
     const double slack = gripper_moves ? std::abs(curvature) / 2 * share + 1e-3 * energy_unit_
-                                       : share * (1 - sufficient) * decrease;
-    if (moved <= promised + std::max(slack, 0.0) + rounding) {
+                                       : share * (1 - armijo_share) * decrease;
+    if (moved <= predicted_energy + std::max(slack, 0.0) + rounding) {
       energy_ = moved;
       return share;
     }
@@ -223,7 +227,7 @@ double ImplicitStep::search(const Rod& rod, bool gripper_moves) {
   return 0;
 }
 
-void ImplicitStep::lead_held_points(const Rod& rod) {
+void ImplicitStep::set_held_movements(const Rod& rod) {
   movement_.setZero();
   for_each_held_point(rod, [this](const Grip& grip, Eigen::Index k) {
     const Eigen::Index i = grip.first_point + k;
@@ -232,14 +236,14 @@ void ImplicitStep::lead_held_points(const Rod& rod) {
 }
 
 double ImplicitStep::newton_step(const Rod& rod, bool gripper_moves) {
-  pure_ = true;
+  was_full_newton_step_ = true;
   for (int attempt = 0; attempt < most_shifts; ++attempt) {
     assemble(rod);
     if (!forces_.allFinite()) break;
     if (solve(rod)) {
       const double share = search(rod, gripper_moves);
       if (share > 0) {
-        pure_ = pure_ && shift_ == 0 && share == 1;
+        was_full_newton_step_ = was_full_newton_step_ && shift_ == 0 && share == 1;
         shift_ = shift_ > unit_ ? shift_ / shift_growth : 0;
         return share;
       }
@@ -247,7 +251,7 @@ double ImplicitStep::newton_step(const Rod& rod, bool gripper_moves) {
     shift_ = std::max(shift_growth * shift_, unit_);
   }
   shift_ = 0;
-  pure_ = false;
+  was_full_newton_step_ = false;
   return 0;
 }
 
@@ -256,7 +260,7 @@ StepResult ImplicitStep::step(const Rod& rod) {
   start_ = points_;
   newton_steps_ = 0;
   energy_known_ = false;
-  lead_held_points(rod);
+  set_held_movements(rod);
   const bool gripper_moves = !movement_.isZero(0);
   double share = 0;
   while (share < 1 && newton_steps_ < most_newton_steps) {
@@ -276,7 +280,7 @@ StepResult ImplicitStep::step(const Rod& rod) {
   }
   result.movement = std::sqrt(movement_.colwise().squaredNorm().maxCoeff());
   movement_rms_ = movement_.norm() / std::sqrt(static_cast<double>(points_.cols()));
-  if (in_time()) velocities_ = movement_ / time_step_;
+  if (is_dynamic()) velocities_ = movement_ / time_step_;
   result.c_m = share;
   result.limited = share < 1;
   result.status = StepStatus::good;
@@ -284,7 +288,7 @@ StepResult ImplicitStep::step(const Rod& rod) {
 }
 
 double ImplicitStep::momentum() const {
-  if (!in_time()) return 0;
+  if (!is_dynamic()) return 0;
   double squares = 0;
   for (Eigen::Index i = 0; i < points_.cols(); ++i) {
     if (is_free_[static_cast<std::size_t>(i)] != 0) squares += velocities_.col(i).squaredNorm();

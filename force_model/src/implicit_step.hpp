@@ -30,7 +30,7 @@ class ImplicitStep {
   /// Returns the number of linear solves of the last step.
   [[nodiscard]] int newton_steps() const { return newton_steps_; }
   /// Whether the last step was a full Newton step with a positive definite stiffness.
-  [[nodiscard]] bool pure() const { return pure_; }
+  [[nodiscard]] bool was_full_newton_step() const { return was_full_newton_step_; }
   /// Returns the RMS movement of the points in the last step [m].
   [[nodiscard]] double movement() const { return movement_rms_; }
   /// Returns the RMS movement that the present velocities still cause [m]; infinite without
@@ -40,14 +40,14 @@ class ImplicitStep {
  private:
   void open_segments(const Rod& rod);
   /// Sets movement_: of held points to the present targets of their grips, of others to 0.
-  void lead_held_points(const Rod& rod);
+  void set_held_movements(const Rod& rod);
   /// Makes a Newton step into trial_. @return fraction of the Newton step that was made; 0 if none
   /// reduces the energy
   [[nodiscard]] double newton_step(const Rod& rod, bool gripper_moves);
   void assemble(const Rod& rod);
   [[nodiscard]] bool solve(const Rod& rod);
   [[nodiscard]] bool solve_linear();
-  void press(const Wall& wall, Eigen::Index i, double depth, double sign);
+  void add_wall_contribution(const Wall& wall, Eigen::Index i, double depth, double sign);
   /// Calls action(wall, point, touches) for each free point and wall.
   template <typename Action>
   void for_each_wall_point(const Rod& rod, const Action& action) {
@@ -63,7 +63,7 @@ class ImplicitStep {
   [[nodiscard]] double search(const Rod& rod, bool gripper_moves);
   [[nodiscard]] double potential(const Rod& rod, const Eigen::Matrix3Xd& points) const;
 
-  [[nodiscard]] bool in_time() const { return inertia_.size() > 0; }
+  [[nodiscard]] bool is_dynamic() const { return inertia_.size() > 0; }
 
   std::vector<char> is_free_;
   bool in_plane_ = false;
@@ -90,7 +90,7 @@ class ImplicitStep {
   double energy_ = 0;  // energy of points_ [J]
   bool energy_known_ = false;
   int newton_steps_ = 0;
-  bool pure_ = false;
+  bool was_full_newton_step_ = false;
   double movement_rms_ = 0;
 };
 

@@ -58,7 +58,7 @@ Eigen::Matrix3Xd with_held_points(const BatchRod& start) {
 
 }  // namespace
 
-Lockstep::Lockstep(std::span<const BatchRod> start, bool together)
+BatchBlock::BatchBlock(std::span<const BatchRod> start, bool together)
     : rods_(checked_rods(start, together)),
       block_(rods_, together, start.front().options.instruction_set) {
   for (std::size_t lane = 0; lane < block_lanes; ++lane) {
@@ -85,24 +85,24 @@ Lockstep::Lockstep(std::span<const BatchRod> start, bool together)
   }
 }
 
-void Lockstep::update_rounding(std::size_t rod) {
+void BatchBlock::update_rounding(std::size_t rod) {
   const double rounding = rounding_share * block_.view(positions, rod).cwiseAbs().maxCoeff();
   rounding_squared_.lane[rod] = rounding * rounding;
 }
 
-void Lockstep::set_active(std::size_t rod, bool active) { active_.lane[rod] = active ? 1 : 0; }
+void BatchBlock::set_active(std::size_t rod, bool active) { active_.lane[rod] = active ? 1 : 0; }
 
-bool Lockstep::any_active() const {
+bool BatchBlock::any_active() const {
   return std::any_of(std::begin(active_.lane), std::end(active_.lane),
                      [](double lane) { return lane != 0; });
 }
 
-void Lockstep::compute_forces() {
-  if (block_.twisted()) block_.follow_twist(rods_.front().twist.angles);
+void BatchBlock::compute_forces() {
+  if (block_.twisted()) block_.update_twist(rods_.front().twist.angles);
   block_.compute_forces(rods_, active_);
 }
 
-void Lockstep::measure_modes() {
+void BatchBlock::measure_modes() {
   bool due = false;
   for (std::size_t rod = 0; rod < rods_.size(); ++rod) {
     due = due || (active(rod) && controls_[rod].measures_modes());
@@ -122,14 +122,14 @@ void Lockstep::measure_modes() {
   }
 }
 
-StepResult Lockstep::step_implicitly() {
+StepResult BatchBlock::step_implicitly() {
   const StepResult result = implicit_->step(rods_.front());
   controls_.front().count(result, implicit_->newton_steps());
   if (result.status == StepStatus::good) block_.set(positions, 0, implicit_->points());
   return result;
 }
 
-StepResult Lockstep::step_by_velocities() {
+StepResult BatchBlock::step_by_velocities() {
   StepResult result;
   copy_points(0, points_);
   forces_ = block_.view(forces, 0);
@@ -139,7 +139,7 @@ StepResult Lockstep::step_by_velocities() {
   return result;
 }
 
-void Lockstep::step(std::span<StepResult> results) {
+void BatchBlock::step(std::span<StepResult> results) {
   if (implicit_) {
     if (active(0)) results[0] = step_implicitly();
     return;
@@ -151,9 +151,10 @@ void Lockstep::step(std::span<StepResult> results) {
     return;
   }
   for (std::size_t rod = 0; rod < rods_.size(); ++rod) {
-    kept_.lane[rod] = controls_[rod].kept() * c_m_.lane[rod];
+    momentum_factors_.lane[rod] = controls_[rod].momentum_factor() * c_m_.lane[rod];
   }
-  block_.propose(c_F_, kept_, rounding_squared_, controls_.front().relative(), proposed_);
+  block_.propose(c_F_, momentum_factors_, rounding_squared_, controls_.front().relative(),
+                 proposed_);
   PerLane c_m;
   bool moves = false;
   for (std::size_t rod = 0; rod < rods_.size(); ++rod) {
@@ -168,18 +169,18 @@ void Lockstep::step(std::span<StepResult> results) {
   c_m_ = c_m;
 }
 
-MovingShape Lockstep::shape(std::size_t rod) {
+MovingShape BatchBlock::shape(std::size_t rod) {
   points_ = block_.view(positions, rod);
   forces_ = block_.view(forces, rod);
   if (implicit_) return {points_, forces_, implicit_->momentum()};
   if (verlet_) return {points_, forces_, verlet_->momentum()};
   const double momentum = c_m_.lane[rod] * block_.last_proposals(rod).norm() /
-                          (1 - controls_[rod].kept()) /
+                          (1 - controls_[rod].momentum_factor()) /
                           std::sqrt(static_cast<double>(points_.cols()));
   return {points_, forces_, controls_[rod].options().policy.momentum ? momentum : 0};
 }
 
-void Lockstep::nudge(std::size_t rod, const Eigen::Matrix3Xd& direction) {
+void BatchBlock::nudge(std::size_t rod, const Eigen::Matrix3Xd& direction) {
   constexpr double share = 1e-6;  // in lengths, far below any tolerance
   block_.set(positions, rod, block_.view(positions, rod) + share * rods_[rod].length() * direction);
   block_.update_dimension(rods_);
@@ -188,7 +189,7 @@ void Lockstep::nudge(std::size_t rod, const Eigen::Matrix3Xd& direction) {
   implicit_->set_points(points_);
 }
 
-RelaxResult Lockstep::relax_implicitly(const RelaxOptions& options) {
+RelaxResult BatchBlock::relax_implicitly(const RelaxOptions& options) {
   RestSearch search(rods_.front(), controls_.front().estimate(), options);
   const auto measurable_shape = [this] {
     block_.update_dimension(rods_);
@@ -200,25 +201,25 @@ RelaxResult Lockstep::relax_implicitly(const RelaxOptions& options) {
   // that is ten times shorter.
   const double length = rods_.front().length();
   double promising = std::sqrt(options.tolerance / 4) * length;
-  while (search.open()) {
+  while (search.may_continue()) {
     const StepResult result = step_implicitly();
     search.count_newton_steps(result, implicit_->newton_steps());
-    if (!search.open()) break;
+    if (!search.may_continue()) break;
     const double moved = std::max(implicit_->movement(), implicit_->momentum());
-    const bool converges = implicit_->pure() && moved < promising;
+    const bool converges = implicit_->was_full_newton_step() && moved < promising;
     if (!converges && !(moved < options.tolerance * length)) continue;
-    const Eigen::Matrix3Xd descent = search.judge(measurable_shape());
+    const Eigen::Matrix3Xd descent = search.end_if_at_rest(measurable_shape());
     if (descent.cols() > 0) {
       nudge(0, descent);
-    } else if (search.open() && moved == 0) {
-      search.stall();
+    } else if (search.may_continue() && moved == 0) {
+      search.end_as_stalled();
     }
     promising = std::min(promising, moved) / 10;
   }
   return search.finish(measurable_shape());
 }
 
-std::vector<RelaxResult> Lockstep::relax(const RelaxOptions& options) {
+std::vector<RelaxResult> BatchBlock::relax(const RelaxOptions& options) {
   if (implicit_) return {relax_implicitly(options)};
   std::vector<RestSearch> searches;
   searches.reserve(rods_.size());
@@ -227,7 +228,7 @@ std::vector<RelaxResult> Lockstep::relax(const RelaxOptions& options) {
   }
   const PerLane active_before = active_;
   const auto stop_if_done = [&](std::size_t rod) {
-    if (!searches[rod].open()) set_active(rod, false);
+    if (!searches[rod].may_continue()) set_active(rod, false);
   };
   std::array<StepResult, block_lanes> results;  // diverged, for rods that are not active
   for (std::size_t rod = 0; rod < rods_.size(); ++rod) {
@@ -264,9 +265,9 @@ std::vector<RelaxResult> Lockstep::relax(const RelaxOptions& options) {
   return outcomes;
 }
 
-void Lockstep::move_grip(std::size_t rod, std::size_t grip,
-                         const Eigen::Ref<const Eigen::Matrix3Xd>& targets,
-                         const Eigen::Vector3d& reference, const Eigen::Vector3d* d1) {
+void BatchBlock::move_grip(std::size_t rod, std::size_t grip,
+                           const Eigen::Ref<const Eigen::Matrix3Xd>& targets,
+                           const Eigen::Vector3d& reference, const Eigen::Vector3d* d1) {
   Rod& held = rods_[rod];
   require(grip < held.grips.size(), "Simulation::move_grip", "grip", static_cast<double>(grip),
           "smaller than the number of grips");
@@ -305,7 +306,7 @@ void Lockstep::move_grip(std::size_t rod, std::size_t grip,
   block_.update_dimension(rods_);
 }
 
-void Lockstep::move_wall(std::size_t rod, std::size_t wall, const Wall& moved) {
+void BatchBlock::move_wall(std::size_t rod, std::size_t wall, const Wall& moved) {
   Rod& held = rods_[rod];
   require(wall < held.walls.size(), "Simulation::move_wall", "wall", static_cast<double>(wall),
           "smaller than the number of walls");

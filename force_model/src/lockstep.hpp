@@ -16,11 +16,11 @@ namespace dlo::force_model {
 
 /// One rod, or up to eight rods of the same size, bending law and step policy that are stepped in a
 /// vectorised batch. Simulation and Batch share this class.
-class Lockstep {
+class BatchBlock {
  public:
   /// @param together  false: one rod, vectorised over its points; true: 1 to 8, one per lane
   /// @throws std::invalid_argument if rods, points or options are out of range
-  Lockstep(std::span<const BatchRod> start, bool together);
+  BatchBlock(std::span<const BatchRod> start, bool together);
 
   /// Makes a step of each active rod. Does not allocate.
   /// @param[out] results  one per rod; those of inactive rods are unchanged
@@ -68,8 +68,8 @@ class Lockstep {
   RodBlock block_;
   std::vector<StepControl> controls_;
   PerLane c_F_;
-  PerLane c_m_;   // c_m of the last step, the factor of its proposed movements
-  PerLane kept_;  // c_h c_m
+  PerLane c_m_;               // c_m of the last step, the factor of its proposed movements
+  PerLane momentum_factors_;  // c_h c_m
   PerLane active_;
   PerLane rounding_squared_;  // square of the smallest movement that counts as oscillation [m^2]
   std::optional<ImplicitStep> implicit_;  // implicit steps of a single rod whose policy uses them

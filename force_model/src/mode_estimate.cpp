@@ -7,7 +7,7 @@
 namespace dlo::force_model {
 namespace {
 
-constexpr double memory = 0.8;  // weight of older blocks
+constexpr double older_block_weight = 0.8;  // weight of older blocks
 
 /// Ratio of estimate to true stiffness up to which the estimate is kept [-]. Below it, heavy_ball's
 /// steps move the slowest mode at least half as fast as possible, which does not justify a restart.
@@ -24,19 +24,19 @@ ModeEstimate::ModeEstimate(const Rod& rod, const Eigen::Matrix3Xd& points)
 void ModeEstimate::update(double inner_mode, double force_change, double point_change) {
   modes_.fastest = inner_mode + constraints_;
   const double lost = 4 * std::sqrt(modes_.slowest / modes_.fastest);  // 1 - c_h
-  if (block_open_ && !(std::abs(force_change) <= modes_.fastest * rounding_ / lost)) {
-    force_change_ = memory * force_change_ + force_change;
-    point_change_ = memory * point_change_ + point_change;
+  if (has_block_start_ && !(std::abs(force_change) <= modes_.fastest * rounding_ / lost)) {
+    force_change_ = older_block_weight * force_change_ + force_change;
+    point_change_ = older_block_weight * point_change_ + point_change;
     if (point_change_ > 0 && force_change_ > 0) modes_.slowest = force_change_ / point_change_;
   }
   modes_.slowest = std::clamp(modes_.slowest, smallest_mode_ratio * modes_.fastest, modes_.fastest);
-  block_open_ = true;
+  has_block_start_ = true;
 }
 
 void ModeEstimate::update_fastest(double inner_mode) {
   modes_.fastest = inner_mode + constraints_;
   modes_.slowest = std::clamp(modes_.slowest, smallest_mode_ratio * modes_.fastest, modes_.fastest);
-  block_open_ = false;
+  has_block_start_ = false;
 }
 
 void ModeEstimate::correct_slowest(double slowest) {
@@ -44,14 +44,14 @@ void ModeEstimate::correct_slowest(double slowest) {
   modes_.slowest = std::max(slowest, smallest_mode_ratio * modes_.fastest);
   force_change_ = 0;
   point_change_ = 0;
-  block_open_ = false;
+  has_block_start_ = false;
 }
 
 void ModeEstimate::change_environment(const Rod& rod, const Eigen::Matrix3Xd& points) {
   constraints_ = constraint_stiffness(rod);
   modes_.fastest = mode_bounds(rod, points).fastest;
   modes_.slowest = std::min(modes_.slowest, modes_.fastest);
-  block_open_ = false;
+  has_block_start_ = false;
 }
 
 }  // namespace dlo::force_model

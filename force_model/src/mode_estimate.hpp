@@ -54,7 +54,7 @@ class ModeEstimate {
   double rounding_ = 0;  // 2 N (eps x)^2 [m^2]
   double force_change_ = 0;
   double point_change_ = 0;
-  bool block_open_ = false;
+  bool has_block_start_ = false;
 };
 
 }  // namespace dlo::force_model

@@ -11,7 +11,8 @@
 namespace dlo::force_model {
 namespace {
 
-constexpr long unconditional_after = 50'000;  // steps before a measurement without signs of rest
+constexpr long steps_to_forced_measurement =
+    50'000;                       // steps before a measurement without signs of rest
 constexpr long clock_steps = 64;  // steps between readings of the clock (cost: one step)
 
 }  // namespace
@@ -37,11 +38,11 @@ RestSearch::RestSearch(const Rod& rod, const ModeEstimate& estimate, const Relax
   require_positive("Simulation::relax", "tolerance", options.tolerance);
   require(options.time_limit > 0, "Simulation::relax", "time_limit", options.time_limit, "> 0");
   result_.status = RelaxStatus::step_limit;
-  next_measurement_ = unconditional_after;
+  next_measurement_ = steps_to_forced_measurement;
   target_ = options.tolerance * rod.length();
 }
 
-bool RestSearch::open() const {
+bool RestSearch::may_continue() const {
   return result_.status == RelaxStatus::step_limit && result_.steps < options_.max_steps;
 }
 
@@ -70,13 +71,13 @@ void RestSearch::count_newton_steps(const StepResult& step, long solves) {
   check_clock();
 }
 
-Eigen::Matrix3Xd RestSearch::judge(const MovingShape& shape) {
+Eigen::Matrix3Xd RestSearch::end_if_at_rest(const MovingShape& shape) {
   EquilibriumCheck check = measure(shape);
-  if (rests(check)) result_.status = RelaxStatus::at_rest;
-  return rests(check) ? Eigen::Matrix3Xd() : std::move(check.negative_curvature_direction);
+  if (is_at_rest(check)) result_.status = RelaxStatus::at_rest;
+  return is_at_rest(check) ? Eigen::Matrix3Xd() : std::move(check.negative_curvature_direction);
 }
 
-bool RestSearch::rests(const EquilibriumCheck& check) const {
+bool RestSearch::is_at_rest(const EquilibriumCheck& check) const {
   return check.stable && check.proven &&
          result_.remaining_error < std::max(target_, check.rounding_error);
 }
@@ -107,7 +108,7 @@ Eigen::Matrix3Xd RestSearch::check_rest(const MovingShape& shape) {
   if (!seems_at_rest && !due) return {};
   next_measurement_ = std::max(next_measurement_, result_.steps + result_.steps / 4);
   EquilibriumCheck check = measure(shape);
-  if (rests(check)) {
+  if (is_at_rest(check)) {
     result_.status = RelaxStatus::at_rest;
     return {};
   }
@@ -116,7 +117,7 @@ Eigen::Matrix3Xd RestSearch::check_rest(const MovingShape& shape) {
   // seemed so wrongly, this mode is better than the estimate that caused it.
   if (check.stable && (check.proven || seems_at_rest)) slowest_mode_ = check.slowest_mode;
   // Without a proof, as with a contact that opens and closes, the motion is damped all the same.
-  const double nearly = rod_.touches_anything() ? 100 : 1;
+  const double nearly = rod_.has_obstacles() ? 100 : 1;
   // The steps of a descent have no momentum. A shape that only creeps in such steps needs momentum,
   // so no further descent follows one that did not halve the distance from rest.
   constexpr double helps = 0.5;
@@ -132,7 +133,7 @@ Eigen::Matrix3Xd RestSearch::check_rest(const MovingShape& shape) {
 RelaxResult RestSearch::finish(const MovingShape& shape) {
   if (result_.status != RelaxStatus::diverged && result_.status != RelaxStatus::at_rest) {
     const EquilibriumCheck check = measure(shape);
-    if (rests(check)) result_.status = RelaxStatus::at_rest;
+    if (is_at_rest(check)) result_.status = RelaxStatus::at_rest;
   }
   result_.message = to_string(result_.status);
   if (result_.status == RelaxStatus::at_rest && neutral_modes_ > 0) {

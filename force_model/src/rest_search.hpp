@@ -24,7 +24,7 @@ class RestSearch {
   RestSearch(const Rod& rod, const ModeEstimate& estimate, const RelaxOptions& options);
 
   /// Whether another step is to be made.
-  [[nodiscard]] bool open() const;
+  [[nodiscard]] bool may_continue() const;
 
   /// Counts a step. @return whether check_rest() is due
   [[nodiscard]] bool count(const StepResult& step);
@@ -33,10 +33,10 @@ class RestSearch {
   void count_newton_steps(const StepResult& step, long solves);
 
   /// Measures the shape and ends the search if it is at rest. @return as check_rest()
-  [[nodiscard]] Eigen::Matrix3Xd judge(const MovingShape& shape);
+  [[nodiscard]] Eigen::Matrix3Xd end_if_at_rest(const MovingShape& shape);
 
   /// Ends the search, because no step changes the shape any more.
-  void stall() { result_.status = RelaxStatus::stalled; }
+  void end_as_stalled() { result_.status = RelaxStatus::stalled; }
 
   /// Ends the search if the shape is at rest. @return for an unstable equilibrium its direction of
   /// negative curvature, see EquilibriumCheck; else empty, 3 x 0
@@ -60,7 +60,7 @@ class RestSearch {
   void check_clock();
   EquilibriumCheck measure(const MovingShape& shape);
   /// Whether the last measured shape is at rest.
-  [[nodiscard]] bool rests(const EquilibriumCheck& check) const;
+  [[nodiscard]] bool is_at_rest(const EquilibriumCheck& check) const;
 
   const Rod& rod_;
   const ModeEstimate& estimate_;

@@ -16,7 +16,7 @@ constexpr double length_tolerance = 1e-13;
 /// movement changes all its lengths equally; the corresponding y is then suppressed.
 constexpr double straight_share = 1e-9;
 /// Smallest factor by which one movement may shorten a segment.
-constexpr double most_shortened = 0.1;
+constexpr double least_length_factor = 0.1;
 
 }  // namespace
 
@@ -36,8 +36,8 @@ void Retraction::move(const Eigen::Matrix3Xd& points, const Eigen::Matrix3Xd& mo
     const Eigen::Vector3d sum = a + d;
     const double length = a.norm();
     const double moved_length = sum.norm();
-    lengths_[i] =
-        length > 0 ? std::max(length + a.dot(d) / length, most_shortened * length) : moved_length;
+    lengths_[i] = length > 0 ? std::max(length + a.dot(d) / length, least_length_factor * length)
+                             : moved_length;
     segments_.col(i) = moved_length > 0 ? Eigen::Vector3d(lengths_[i] / moved_length * sum) : a;
   }
   Eigen::Index anchor = -1;  // index of the last anchor

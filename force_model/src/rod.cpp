@@ -13,16 +13,17 @@ namespace {
 using Points = Eigen::Ref<const Eigen::Matrix3Xd>;
 
 void check_grip(const Grip& grip, Eigen::Index points) {
-  const auto held = static_cast<double>(grip.targets.cols());
-  require(held == 1 || held == 2, "Rod", "points held by a grip", held, "1 or 2");
+  const auto point_count = static_cast<double>(grip.targets.cols());
+  require(point_count == 1 || point_count == 2, "Rod", "points held by a grip", point_count,
+          "1 or 2");
   require(grip.first_point >= 0 && grip.first_point + grip.targets.cols() <= points, "Rod",
           "first point of a grip", static_cast<double>(grip.first_point),
           ">= 0, with all points of the grip on the rod");
   require(grip.targets.allFinite(), "Rod", "targets of a grip", grip.targets.norm(), "finite");
   if (grip.hold == GripHold::spring) require_positive("Rod", "grip stiffness", grip.stiffness);
   if (!grip.d1) return;
-  require(held == 2 && grip.hold == GripHold::rigid, "Rod", "points held by a grip with d1", held,
-          "2 with a rigid hold: one point, or a segment on springs, holds no frame");
+  require(point_count == 2 && grip.hold == GripHold::rigid, "Rod", "points held by a grip with d1",
+          point_count, "2 with a rigid hold: one point, or a segment on springs, holds no frame");
   require(grip.d1->allFinite(), "Rod", "|d1| of a grip", grip.d1->norm(), "finite");
   // Below this fraction of its length, the direction of the transverse component is determined by
   // rounding.
@@ -102,7 +103,8 @@ const Grip* next_framed_grip(const Rod& rod, const Grip* after) {
   return next;
 }
 
-TwistedSpan span_between(const Rod& rod, const Grip& first, const Grip& last, Eigen::Index number) {
+TwistedSpan make_twisted_span(const Rod& rod, const Grip& first, const Grip& last,
+                              Eigen::Index number) {
   TwistedSpan span;
   span.first_segment = first.first_point;
   span.last_segment = last.first_point;

@@ -133,11 +133,11 @@ void RodBlock::set_twist(const Rod& rod) {
                                     const Grip& /*last*/) { twisted_spans_.push_back(span); });
 }
 
-void RodBlock::follow_twist(Eigen::VectorXd& angles) {
+void RodBlock::update_twist(Eigen::VectorXd& angles) {
   const View points = view(positions, 0);
   for (std::size_t number = 0; number < twisted_spans_.size(); ++number) {
     TwistedSpan& span = twisted_spans_[number];
-    const double angle = followed_twist(span, points);
+    const double angle = current_twist_angle(span, points);
     // A rod that diverges continues from its previous shape.
     if (!std::isfinite(angle)) continue;
     span.angle = angles[static_cast<Eigen::Index>(number)] = angle;
@@ -241,19 +241,19 @@ void RodBlock::compute_forces(std::span<const Rod> rods, const PerLane& active) 
   }
 }
 
-void RodBlock::propose(const PerLane& c_F, const PerLane& kept, const PerLane& rounding_squared,
-                       bool relative, ProposedStep& step) {
+void RodBlock::propose(const PerLane& c_F, const PerLane& momentum_factor,
+                       const PerLane& rounding_squared, bool relative, ProposedStep& step) {
   const auto propose = relative ? kernel_->propose_relative : kernel_->propose_absolute;
-  propose(block(), turn_, c_F, kept, rounding_squared, step);
+  propose(block(), proposal_set_, c_F, momentum_factor, rounding_squared, step);
 }
 
 void RodBlock::move(const PerLane& c_m) {
-  kernel_->move(block(), turn_, c_m);
-  turn_ = 1 - turn_;
+  kernel_->move(block(), proposal_set_, c_m);
+  proposal_set_ = 1 - proposal_set_;
 }
 
 RodBlock::View RodBlock::last_proposals(std::size_t rod) const {
-  return view(proposals + axes * (1 - turn_), rod);
+  return view(proposals + axes * (1 - proposal_set_), rod);
 }
 
 }  // namespace dlo::force_model

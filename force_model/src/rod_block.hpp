@@ -40,7 +40,7 @@ class RodBlock {
   [[nodiscard]] bool twisted() const { return !twisted_spans_.empty(); }
   /// Updates the twist angles to the present shape, also in `angles`, and the moments of the
   /// joints.
-  void follow_twist(Eigen::VectorXd& angles);
+  void update_twist(Eigen::VectorXd& angles);
 
   /// Determines whether all rods stay in the plane z = 0 in which they lie. Must be called after
   /// positions, loads, targets or walls have changed.
@@ -52,8 +52,9 @@ class RodBlock {
   /// Measures the modes of the present shape, whose forces must have been computed.
   void measure_modes(ModeMeasurement& measured) { kernel_->measure_modes(block(), measured); }
 
-  /// Proposes movements, c_F forces + `kept` times the last proposed ones, and measures them.
-  void propose(const PerLane& c_F, const PerLane& kept, const PerLane& rounding_squared,
+  /// Proposes movements, c_F forces + `momentum_factor` times the last proposed ones, and measures
+  /// them.
+  void propose(const PerLane& c_F, const PerLane& momentum_factor, const PerLane& rounding_squared,
                bool relative, ProposedStep& step);
 
   /// Moves the points of each rod by c_m times its proposed movements.
@@ -90,7 +91,7 @@ class RodBlock {
   std::vector<WallLanes> walls_;
   bool spring_grips_ = false;
   bool solids_ = false;
-  int turn_ = 0;  // set of proposals that the next step writes
+  int proposal_set_ = 0;  // set of proposals that the next step writes
   PerLane regular_;
   Eigen::Matrix3Xd plain_points_;
   Eigen::Matrix3Xd plain_forces_;

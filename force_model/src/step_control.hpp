@@ -49,7 +49,9 @@ class StepControl {
   void count(const StepResult& result, long evaluations);
 
   /// Returns c_h, or 0 for policies without momentum.
-  [[nodiscard]] double kept() const { return options_.policy.momentum ? options_.c_h : 0; }
+  [[nodiscard]] double momentum_factor() const {
+    return options_.policy.momentum ? options_.c_h : 0;
+  }
   [[nodiscard]] bool relative() const { return options_.policy.limit == StepLimit::relative; }
 
   [[nodiscard]] const StepOptions& options() const { return options_; }

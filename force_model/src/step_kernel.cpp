@@ -29,9 +29,9 @@ namespace dlo::force_model::DLO_KERNEL {
 namespace {
 
 /// cos(hooke_fold_angle). Joints that are folded further, and joints next to segments so short that
-/// a b is below `no_area` [m^2], are left to the plain implementation.
+/// a b is below `zero_area` [m^2], are left to the plain implementation.
 constexpr double fold_cosine = -0.98999249660044546;
-constexpr double no_area = 1e-60;
+constexpr double zero_area = 1e-60;
 
 /// Segments k and the joints at P_k, where they begin.
 template <int dimension>
@@ -44,7 +44,7 @@ struct Segments {
 };
 
 /// Moments of joints in addition to their bending law.
-enum class JointExtra { nothing, couples, twist };
+enum class AdditionalMoment { nothing, couples, twist };
 
 inline LaneVector<3> cross(const LaneVector<3>& a, const LaneVector<3>& b) {
   return {{a.axis[1] * b.axis[2] - a.axis[2] * b.axis[1],
@@ -53,20 +53,20 @@ inline LaneVector<3> cross(const LaneVector<3>& a, const LaneVector<3>& b) {
 }
 
 /// Rotates vectors of the plane z = 0 to the left by a right angle.
-inline LaneVector<2> left(const LaneVector<2>& s) { return {{-s.axis[1], s.axis[0]}}; }
+inline LaneVector<2> rotate_left(const LaneVector<2>& s) { return {{-s.axis[1], s.axis[0]}}; }
 
 /// Adds the forces of these additional moments to the force through segment k.
-template <JointExtra extra, int dimension, std::ptrdiff_t stride>
-void add_extra(const Registers<dimension, stride>& all, std::ptrdiff_t k,
-               const Segments<dimension>& here, const Segments<dimension>& following,
-               LaneVector<dimension>& T) {
+template <AdditionalMoment extra, int dimension, std::ptrdiff_t stride>
+void add_additional_moment(const Registers<dimension, stride>& all, std::ptrdiff_t k,
+                           const Segments<dimension>& here, const Segments<dimension>& following,
+                           LaneVector<dimension>& T) {
   using All = Registers<dimension, stride>;
   const Lanes inverse = here.inverse_length;
-  if constexpr (extra == JointExtra::couples) {
+  if constexpr (extra == AdditionalMoment::couples) {
     const Lanes couple = all.load(natural, k + stride) - all.load(natural, k);
-    T = T + (couple * inverse * inverse) * left(here.s);  // (d)
+    T = T + (couple * inverse * inverse) * rotate_left(here.s);  // (d)
   }
-  if constexpr (extra == JointExtra::twist) {
+  if constexpr (extra == AdditionalMoment::twist) {
     const Lanes M_here = all.load(twist_share, k) * here.m;
     const Lanes M_after = all.load(twist_share, k + stride) * All::after(here.m, following.m);
     T = T + inverse * (M_here * cross(here.s_before, here.s) +
@@ -74,7 +74,7 @@ void add_extra(const Registers<dimension, stride>& all, std::ptrdiff_t k,
   }
 }
 
-template <BendingLaw law, int dimension, std::ptrdiff_t stride, JointExtra extra>
+template <BendingLaw law, int dimension, std::ptrdiff_t stride, AdditionalMoment extra>
 void compute_forces(const PointBlock& block, PointArray applied, PerLane& regular) {
   using All = Registers<dimension, stride>;
   using Vector = LaneVector<dimension>;
@@ -94,7 +94,7 @@ void compute_forces(const PointBlock& block, PointArray applied, PerLane& regula
       const Lanes ab = a * here.length;
       const Lanes product = all.load(is_joint, k) * dot(here.s_before, here.s);
       const Lanes opening = ab + product;  // a b (1 + c)
-      good = opening >= (1 + fold_cosine) * ab + no_area ? good : Lanes{};
+      good = opening >= (1 + fold_cosine) * ab + zero_area ? good : Lanes{};
       // One division gives both 1/b and m.
       if constexpr (law == BendingLaw::hooke) {
         const Lanes inverse = 1 / (here.length * opening);
@@ -121,7 +121,7 @@ void compute_forces(const PointBlock& block, PointArray applied, PerLane& regula
                        All::after(here.m, following.m) * All::after(here.s, following.s);
       const Lanes along = (tension + dot(h, here.s) * inverse) * inverse;
       Vector T = along * here.s - h;  // (c)
-      add_extra<extra>(all, k, here, following, T);
+      add_additional_moment<extra>(all, k, here, following, T);
       const Vector inner = T - All::before(T_previous, T);   // (2), (4)
       const Vector F = inner + all.load_vector(applied, k);  // (6)
       all.store_vector(forces, k, all.load(is_free, k) * F);
@@ -137,7 +137,7 @@ void compute_forces(const PointBlock& block, PointArray applied, PerLane& regula
 /// without direction is treated as straight.
 template <BendingLaw law>
 Lanes joint_mode(Lanes stiffness, Lanes ab, Lanes product, Lanes L, Lanes lever) {
-  const Lanes cosine = ab > no_area ? product / ab : all_lanes(1);
+  const Lanes cosine = ab > zero_area ? product / ab : all_lanes(1);
   if constexpr (law == BendingLaw::hooke) {
     // M = k sin / (1 + cos), M' = k / (1 + cos) with k = 2 EI / L; M stays beyond the fold angle.
     const Lanes followed = max(cosine, all_lanes(fold_cosine));
@@ -154,7 +154,7 @@ Lanes joint_mode(Lanes stiffness, Lanes ab, Lanes product, Lanes L, Lanes lever)
   }
 }
 
-template <BendingLaw law, int dimension, std::ptrdiff_t stride, JointExtra extra>
+template <BendingLaw law, int dimension, std::ptrdiff_t stride, AdditionalMoment extra>
 void measure_modes(const PointBlock& block, ModeMeasurement& measured) {
   using All = Registers<dimension, stride>;
   using Vector = LaneVector<dimension>;
@@ -182,7 +182,7 @@ void measure_modes(const PointBlock& block, ModeMeasurement& measured) {
       const Lanes lever = min(All::before(bounded_previous, bounded), bounded);
       Lanes joint = joint_mode<law>(
           all.load(bend, k), All::before(length_previous, length) * length, product, mean, lever);
-      if constexpr (extra == JointExtra::couples) {
+      if constexpr (extra == AdditionalMoment::couples) {
         const Lanes couple = all.load(natural, k);
         joint += 4 * max(couple, -couple) / (lever * lever);
       }
@@ -233,7 +233,7 @@ void add_walls(const PointBlock& block, const WallLanes* walls, std::ptrdiff_t c
 }
 
 template <bool relative, int dimension, std::ptrdiff_t stride>
-void propose(const PointBlock& block, int turn, const PerLane& c_F, const PerLane& kept,
+void propose(const PointBlock& block, int turn, const PerLane& c_F, const PerLane& momentum_factor,
              const PerLane& rounding_squared, ProposedStep& step) {
   using All = Registers<dimension, stride>;
   using Vector = LaneVector<dimension>;
@@ -242,7 +242,7 @@ void propose(const PointBlock& block, int turn, const PerLane& c_F, const PerLan
   const int last_proposed = proposals + 3 * (1 - turn);
   for (std::ptrdiff_t column = 0; column < All::columns; ++column) {
     const Lanes per_force = All::lanes_of_rods(c_F, column);
-    const Lanes per_movement = All::lanes_of_rods(kept, column);
+    const Lanes per_movement = All::lanes_of_rods(momentum_factor, column);
     const Lanes rounding = All::lanes_of_rods(rounding_squared, column);
     Lanes largest = {};
     Lanes total = {};
@@ -293,7 +293,7 @@ void move(const PointBlock& block, int turn, const PerLane& c_m) {
   }
 }
 
-template <BendingLaw law, int dimension, std::ptrdiff_t stride, JointExtra extra>
+template <BendingLaw law, int dimension, std::ptrdiff_t stride, AdditionalMoment extra>
 constexpr StepKernel kernel = {
     .add_walls = add_walls<dimension, stride>,
     .compute_forces = compute_forces<law, dimension, stride, extra>,
@@ -303,15 +303,15 @@ constexpr StepKernel kernel = {
     .move = move<dimension, stride>,
 };
 
-template <BendingLaw law, int dimension, JointExtra extra = JointExtra::nothing>
-const StepKernel& with_stride(std::ptrdiff_t stride) {
+template <BendingLaw law, int dimension, AdditionalMoment extra = AdditionalMoment::nothing>
+const StepKernel& kernel_for_stride(std::ptrdiff_t stride) {
   return stride == 1 ? kernel<law, dimension, 1, extra>
                      : kernel<law, dimension, block_lanes, extra>;
 }
 
 template <BendingLaw law>
-const StepKernel& with_dimension(int dimension, std::ptrdiff_t stride) {
-  return dimension == 2 ? with_stride<law, 2>(stride) : with_stride<law, 3>(stride);
+const StepKernel& kernel_for_dimension(int dimension, std::ptrdiff_t stride) {
+  return dimension == 2 ? kernel_for_stride<law, 2>(stride) : kernel_for_stride<law, 3>(stride);
 }
 
 }  // namespace
@@ -319,11 +319,12 @@ const StepKernel& with_dimension(int dimension, std::ptrdiff_t stride) {
 const StepKernel& step_kernel(const KernelChoice& choice, std::ptrdiff_t stride);
 
 const StepKernel& step_kernel(const KernelChoice& choice, std::ptrdiff_t stride) {
-  if (choice.natural) return with_stride<BendingLaw::hooke, 2, JointExtra::couples>(stride);
-  if (choice.twisted) return kernel<BendingLaw::hooke, 3, 1, JointExtra::twist>;
+  if (choice.natural)
+    return kernel_for_stride<BendingLaw::hooke, 2, AdditionalMoment::couples>(stride);
+  if (choice.twisted) return kernel<BendingLaw::hooke, 3, 1, AdditionalMoment::twist>;
   return choice.law == BendingLaw::hooke
-             ? with_dimension<BendingLaw::hooke>(choice.dimension, stride)
-             : with_dimension<BendingLaw::paper>(choice.dimension, stride);
+             ? kernel_for_dimension<BendingLaw::hooke>(choice.dimension, stride)
+             : kernel_for_dimension<BendingLaw::paper>(choice.dimension, stride);
 }
 
 }  // namespace dlo::force_model::DLO_KERNEL

@@ -95,11 +95,11 @@ struct StepKernel {
   /// @param rounding_squared  a point reverses its direction if the scalar product of its proposals
   /// is below minus this [m^2]
   void (*propose_relative)(const PointBlock& block, int turn, const PerLane& c_F,
-                           const PerLane& kept, const PerLane& rounding_squared,
+                           const PerLane& momentum_factor, const PerLane& rounding_squared,
                            ProposedStep& step);
   /// Computes the same proposals, each compared on its own (16).
   void (*propose_absolute)(const PointBlock& block, int turn, const PerLane& c_F,
-                           const PerLane& kept, const PerLane& rounding_squared,
+                           const PerLane& momentum_factor, const PerLane& rounding_squared,
                            ProposedStep& step);
   /// Computes positions += c_m proposals; rods with c_m = 0 do not move.
   void (*move)(const PointBlock& block, int turn, const PerLane& c_m);

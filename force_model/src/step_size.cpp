@@ -48,9 +48,9 @@ double fastest_inner_mode(const Rod& rod, const Points& points) {
 
 /// Returns the EI of a Hookean rod with the same deflection under these loads.
 double equivalent_rigidity(const Rod& rod) {
-  const bool alike = rod.bending.stiffnesses.size() == 0;
+  const bool is_uniform = rod.bending.stiffnesses.size() == 0;
   const double stiffness =
-      alike ? rod.bending.stiffness : rod.bending.stiffnesses.minCoeff();  // the slowest
+      is_uniform ? rod.bending.stiffness : rod.bending.stiffnesses.minCoeff();  // the slowest
   if (rod.bending.law == BendingLaw::hooke) return stiffness;
   const double L = rod.rest_lengths.mean();
   const double moment = rod.loads.colwise().norm().sum() * rod.length() / 2;

@@ -13,11 +13,12 @@
 namespace dlo::force_model {
 
 /// Adds contraction: c_c/L along each segment, and the transverse stiffness due to its tension.
-/// @param most_pressed  largest reduction of the transverse stiffness by compression, as a fraction
+/// @param largest_compression  largest reduction of the transverse stiffness by compression, as a
+/// fraction
 ///                      of c_c/L [-]
 template <typename Stiffness>
 void add_segments(const Rod& rod, const Eigen::Ref<const Eigen::Matrix3Xd>& points,
-                  double most_pressed, Stiffness& stiffness) {
+                  double largest_compression, Stiffness& stiffness) {
   // A segment of zero length has no direction: all directions then have the transverse stiffness.
   constexpr double no_length = 1e-9;
   for (Eigen::Index i = 0; i < rod.rest_lengths.size(); ++i) {
@@ -26,7 +27,7 @@ void add_segments(const Rod& rod, const Eigen::Ref<const Eigen::Matrix3Xd>& poin
     const double length = std::max(segment.norm(), no_length * L);
     const Eigen::Vector3d u = segment / length;
     const double across =
-        std::max(rod.c_c * (length - L) / L / length, -most_pressed * rod.c_c / L);
+        std::max(rod.c_c * (length - L) / L / length, -largest_compression * rod.c_c / L);
     const Eigen::Matrix3d along = u * u.transpose();
     const Eigen::Matrix3d block =
         rod.c_c / L * along + across * (Eigen::Matrix3d::Identity() - along);

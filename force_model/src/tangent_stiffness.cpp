@@ -152,7 +152,7 @@ void add_twist(const Rod& rod, const Eigen::Ref<const Eigen::Matrix3Xd>& points,
       u /= a;
       v /= b;
       const double opening = 1 + u.dot(v);
-      if (!(opening > no_opening)) continue;
+      if (!(opening > folded_joint_threshold)) continue;
       const Eigen::Vector3d kb = 2 / opening * u.cross(v);
       const Eigen::Vector3d t = (u + v) / opening;
       const Eigen::Matrix3d aa = -kb * (t + u).transpose() / (4 * a * a);

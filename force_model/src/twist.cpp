@@ -42,7 +42,7 @@ TwistedJoint twisted_joint(const Points& points, Eigen::Index i) {
   const double opening = 1 + before.dot(after) / (a * b);
   static const double most = std::tan(hooke_fold_angle / 2);
   joint.tangent = most;
-  if (!(opening > no_opening)) return joint;
+  if (!(opening > folded_joint_threshold)) return joint;
   joint.half_binormal = before.cross(after) / (a * b * opening);
   joint.tangent = std::min(most, joint.half_binormal.norm());
   return joint;
@@ -64,12 +64,12 @@ void add_gradient(const TwistedSpan& span, double factor, const Points& points,
 
 double twist_angle(const TwistedSpan& span, const Points& points) {
   require_segments("twist_angle", span, points);
-  return followed_twist(span, points);
+  return current_twist_angle(span, points);
 }
 
 double twist_energy(const TwistedSpan& span, const Points& points) {
   require_segments("twist_energy", span, points);
-  const double theta = followed_twist(span, points);
+  const double theta = current_twist_angle(span, points);
   return theta * theta / (2 * span.compliance);  // (1)
 }
 
@@ -78,7 +78,7 @@ void add_twist_forces(const TwistedSpan& span, const Points& points,
   require_segments("add_twist_forces", span, points);
   require(forces.cols() == points.cols(), "add_twist_forces", "columns of forces",
           static_cast<double>(forces.cols()), "the number of points");
-  add_gradient(span, -followed_twist(span, points) / span.compliance, points, forces);
+  add_gradient(span, -current_twist_angle(span, points) / span.compliance, points, forces);
 }
 
 void twist_gradient(const TwistedSpan& span, const Points& points,
@@ -114,7 +114,7 @@ double twist_mode_bound(const TwistedSpan& span,
   }
   const Eigen::Vector3d by_last = joint.half_binormal / joint.b;
   squared += (by_previous - by_last).squaredNorm() + by_last.squaredNorm();
-  const double moment = std::abs(followed_twist(span, points)) / span.compliance;
+  const double moment = std::abs(current_twist_angle(span, points)) / span.compliance;
   return squared / span.compliance +
          8 * moment * (1 + steepest + steepest * steepest) / (shortest * shortest);
 }

@@ -11,15 +11,15 @@ namespace dlo::force_model {
 
 /// Value of 1 + cos(alpha) below which a joint is folded back on itself and has neither a smallest
 /// rotation nor a binormal.
-inline constexpr double no_opening = 1e-12;
+inline constexpr double folded_joint_threshold = 1e-12;
 
 /// Returns the next grip along the rod that holds the frame, after `after` or (null) from the
 /// beginning; null if there is none.
 [[nodiscard]] const Grip* next_framed_grip(const Rod& rod, const Grip* after);
 
 /// Returns the part of the rod between two such grips.
-[[nodiscard]] TwistedSpan span_between(const Rod& rod, const Grip& first, const Grip& last,
-                                       Eigen::Index number);
+[[nodiscard]] TwistedSpan make_twisted_span(const Rod& rod, const Grip& first, const Grip& last,
+                                            Eigen::Index number);
 
 /// Calls action(span, first grip, last grip) for each span along the rod. Does not allocate.
 template <typename Action>
@@ -29,7 +29,7 @@ void for_each_twisted_span(const Rod& rod, const Action& action) {
   Eigen::Index number = 0;
   for (const Grip* last = next_framed_grip(rod, first); last != nullptr;
        last = next_framed_grip(rod, first)) {
-    action(span_between(rod, *first, *last, number++), *first, *last);
+    action(make_twisted_span(rod, *first, *last, number++), *first, *last);
     first = last;
   }
 }
@@ -40,7 +40,7 @@ void for_each_twisted_span(const Rod& rod, const Action& action) {
 
 /// Returns twist_angle of points in any storage.
 template <typename Points>
-double followed_twist(const TwistedSpan& span, const Points& points) {
+double current_twist_angle(const TwistedSpan& span, const Points& points) {
   const auto segment = [&points](Eigen::Index k) -> Eigen::Vector3d {
     return points.col(k + 1) - points.col(k);
   };
@@ -53,7 +53,7 @@ double followed_twist(const TwistedSpan& span, const Points& points) {
     const Eigen::Vector3d next = s / length;
     const double opening = 1 + t.dot(next);
     // Smallest rotation of the component across t.
-    if (opening > no_opening) d -= d.dot(next) / opening * (t + next);
+    if (opening > folded_joint_threshold) d -= d.dot(next) / opening * (t + next);
     t = next;
   }
   const double turned = std::atan2(t.dot(d.cross(span.last_d1)),

@@ -22,9 +22,9 @@ VerletStep::VerletStep(const Rod& rod, const StepOptions& options)
 void VerletStep::step(const Eigen::Matrix3Xd& forces, Eigen::Matrix3Xd& points,
                       StepResult& result) {
   const double lost = damping_rate_ * time_step_ / 2;
-  const double kept = started_ ? (1 - lost) / (1 + lost) : 0;
+  const double momentum_factor = started_ ? (1 - lost) / (1 + lost) : 0;
   const double share = started_ ? time_step_ / (1 + lost) : time_step_ / 2;
-  next_ = kept * velocities_ + share * (forces * inverse_masses_.asDiagonal());
+  next_ = momentum_factor * velocities_ + share * (forces * inverse_masses_.asDiagonal());
   result.movement = time_step_ * std::sqrt(next_.colwise().squaredNorm().maxCoeff());
   if (!next_.allFinite() || !std::isfinite(result.movement)) return;
   velocities_.swap(next_);

@@ -17,8 +17,8 @@ Eigen::Matrix3d axes_with(Eigen::Index axis, const Eigen::Vector3d& direction) {
 }
 
 /// Returns the vector from the nearest point of a block to a point; zero inside the block.
-Eigen::Vector3d beyond(const Eigen::Vector3d& local, const Eigen::Vector3d& lower,
-                       const Eigen::Vector3d& upper) {
+Eigen::Vector3d vector_from_block(const Eigen::Vector3d& local, const Eigen::Vector3d& lower,
+                                  const Eigen::Vector3d& upper) {
   return local - local.cwiseMax(lower).cwiseMin(upper);
 }
 
@@ -80,7 +80,7 @@ Body Body::box(const Eigen::Vector3d& centre, const Eigen::Matrix3d& axes,
   return body;
 }
 
-Body Body::rounded(double share) const {
+Body Body::with_rounded_edges(double share) const {
   Body body = *this;
   if (is_half_space()) return body;
   body.radius_ += share * upper_.minCoeff();
@@ -92,7 +92,7 @@ Body Body::rounded(double share) const {
   return body;
 }
 
-Body Body::grown(double by) const {
+Body Body::enlarged(double by) const {
   Body body = *this;
   body.radius_ += by;
   return body;
@@ -111,7 +111,7 @@ Body Body::transformed(const Eigen::Vector3d& origin, const Eigen::Matrix3d& tur
 
 Gap Body::gap(const Eigen::Vector3d& point) const {
   const Eigen::Vector3d local = axes_.transpose() * (point - centre_);
-  const Eigen::Vector3d out = beyond(local, lower_, upper_);
+  const Eigen::Vector3d out = vector_from_block(local, lower_, upper_);
   const double distance = out.norm();
   if (!(distance > 0)) {
     const Face face = nearest_face(local, lower_, upper_);
@@ -133,7 +133,7 @@ Gap Body::gap(const Eigen::Vector3d& point) const {
 
 double Body::clearance(const Eigen::Vector3d& point) const {
   const Eigen::Vector3d local = axes_.transpose() * (point - centre_);
-  const double distance = beyond(local, lower_, upper_).norm();
+  const double distance = vector_from_block(local, lower_, upper_).norm();
   if (distance > 0) return distance - radius_;
   return -nearest_face(local, lower_, upper_).depth - radius_;
 }
@@ -149,7 +149,7 @@ Eigen::VectorXd Body::clearances(const Eigen::Ref<const Eigen::Matrix3Xd>& point
 
 int Body::feature(const Eigen::Vector3d& point) const {
   const Eigen::Vector3d local = axes_.transpose() * (point - centre_);
-  Eigen::Vector3d out = beyond(local, lower_, upper_);
+  Eigen::Vector3d out = vector_from_block(local, lower_, upper_);
   if (!(out.squaredNorm() > 0)) {
     const Face face = nearest_face(local, lower_, upper_);
     out[face.axis] = face.sign;

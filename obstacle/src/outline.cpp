@@ -72,8 +72,8 @@ Eigen::Matrix2Xd outline(const Body& body, const Eigen::Vector3d& right, const E
   for (const double angle : angles_of(core)) {
     const Eigen::Vector2d direction(std::cos(angle), std::sin(angle));
     // The farthest corner changes at the normal of an edge; both corners are ends of the edge.
-    constexpr double beside = 1e-7;
-    for (const double side : {-beside, beside}) {
+    constexpr double offset = 1e-7;
+    for (const double side : {-offset, offset}) {
       const Eigen::Vector2d near(std::cos(angle + side), std::sin(angle + side));
       add(core.corner(near) + body.radius() * direction);
     }

@@ -21,7 +21,7 @@ class CalibrateCommand : public Command {
     return write(name, rod + gripper_text(fmt::format("direction = \"{} deg\"", angle)) + more);
   }
   /// Writes the exact shape of a scene, without arc lengths, and returns the file's name.
-  std::string seen(const std::string& scene, const std::string& name) {
+  std::string write_exact_shape(const std::string& scene, const std::string& name) {
     return write_table(name, "x,y,z", solved_points(scene + " --model exact --samples 9"));
   }
 };

@@ -56,7 +56,7 @@ class Command : public Folder {
   }
 
   /// Returns the standard output of a command, which must succeed.
-  [[nodiscard]] std::string said(const std::string& arguments) const {
+  [[nodiscard]] std::string output_of(const std::string& arguments) const {
     const Outcome result = run(arguments);
     EXPECT_EQ(result.status, 0) << arguments << "\n" << result.err;
     return result.out;
@@ -67,11 +67,11 @@ class Command : public Folder {
                      const std::vector<std::string>& words) const {
     const Outcome result = run(arguments);
     EXPECT_EQ(result.status, status) << arguments << "\n" << result.err;
-    EXPECT_TRUE(says(result.out + result.err, words)) << arguments;
+    EXPECT_TRUE(has_all(result.out + result.err, words)) << arguments;
   }
 
   /// Runs a command for the files that it writes, and expects exit status 0.
-  void succeeds(const std::string& arguments) const { (void)said(arguments); }
+  void succeeds(const std::string& arguments) const { (void)output_of(arguments); }
 
   /// Returns the document that a command writes.
   [[nodiscard]] nlohmann::json json_of(const std::string& arguments, int status = 0) const {
@@ -82,7 +82,7 @@ class Command : public Folder {
 
   /// Returns rows x, y, z, s [m] of the shape that `dlo solve` finds with these arguments.
   [[nodiscard]] std::vector<std::vector<double>> solved_points(const std::string& arguments) const {
-    return csv_numbers(csv_rows(said("solve " + arguments + " --format csv")), 1);
+    return csv_numbers(csv_rows(output_of("solve " + arguments + " --format csv")), 1);
   }
 
   /// Writes rows of numbers below a header, of each as many as the header has names.
@@ -105,7 +105,7 @@ class Command : public Folder {
   }
 
   /// Returns the largest difference of a coordinate of two documents' points [m].
-  static double points_apart(const nlohmann::json& a, const nlohmann::json& b) {
+  static double largest_coordinate_difference(const nlohmann::json& a, const nlohmann::json& b) {
     EXPECT_EQ(a.at("points_m").size(), b.at("points_m").size());
     double apart = 0;
     for (std::size_t i = 0; i < a.at("points_m").size(); ++i) {
@@ -146,7 +146,7 @@ class Command : public Folder {
     EXPECT_EQ(result.status, status) << arguments << "\n" << result.err;
     EXPECT_EQ(result.out, "") << arguments;
     EXPECT_EQ(std::count(result.err.begin(), result.err.end(), '\n'), 1) << result.err;
-    EXPECT_TRUE(says(result.err, names));
+    EXPECT_TRUE(has_all(result.err, names));
   }
 
   static std::string steel() { return std::string(DLO_DATA) + "/scenes/spring_steel_175.toml"; }

@@ -67,7 +67,7 @@ inline std::vector<std::vector<double>> csv_numbers(const std::vector<CsvRow>& r
 }
 
 /// Returns the value in a column of the first row below the header.
-inline std::string in_first_row(const std::string& text, const std::string& column) {
+inline std::string first_row_value(const std::string& text, const std::string& column) {
   const std::vector<CsvRow> rows = csv_rows(text);
   const auto name = std::find(rows.at(0).begin(), rows.at(0).end(), column);
   if (name == rows.at(0).end()) throw std::runtime_error("no column " + column + " in " + text);

@@ -62,7 +62,7 @@ inline Eigen::Matrix3Xd correlated_noise(const std::vector<double>& s, double si
 }
 
 /// Whether an interval contains the true value; a missing bound is infinite.
-inline bool holds(const compare::FittedValue& value, double truth) {
+inline bool interval_contains(const compare::FittedValue& value, double truth) {
   return (!value.low || *value.low <= truth) && (!value.high || *value.high >= truth);
 }
 
@@ -80,8 +80,8 @@ inline compare::MeasuredShape exact_shape(const compare::Scene& scene,
 }
 
 /// Returns the energy model's shape of a scene with these arc lengths.
-inline compare::MeasuredShape seen_shape(const compare::Scene& scene,
-                                         const std::vector<double>& s) {
+inline compare::MeasuredShape energy_model_shape(const compare::Scene& scene,
+                                                 const std::vector<double>& s) {
   return {"seen", compare::solve_reference(scene, compare::Model::energy).sample(s).points, s};
 }
 

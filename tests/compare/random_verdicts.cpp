@@ -46,9 +46,10 @@ using dlo::test::RandomNumbers;
 using dlo::test::RandomSpace;
 using Points = Eigen::Matrix3Xd;
 
-constexpr double allowed = 0.01;             // tolerance over the length
-constexpr double time_limit = 10;            // time limit of a solve [s]
-constexpr double clearly = 1.1;              // factor on the tolerance of what is certainly wrong
+constexpr double allowed = 0.01;   // tolerance over the length
+constexpr double time_limit = 10;  // time limit of a solve [s]
+constexpr double certainly_wrong_factor =
+    1.1;                                     // factor on the tolerance of what is certainly wrong
 constexpr double tolerated_failures = 0.01;  // share of right files that may fail
 
 /// The classes of scenes, used in turn.
@@ -105,7 +106,7 @@ Scene scene_of(std::uint64_t number, RandomNumbers& random) {
   }
   if (kinds[number % kinds.size()] == std::string("stretch")) {
     scene.stretch = Stretch::counted;
-    const double force = 1 + scene.weight_per_length().norm() + scene.total_of_loads();
+    const double force = 1 + scene.weight_per_length().norm() + scene.total_load_magnitude();
     scene.given_axial_stiffness = std::pow(10, random.uniform(1.3, 3)) * force;
   }
   return scene;
@@ -192,27 +193,27 @@ class Verdicts {
     const bool has_s = random.chance(0.5);
     const MeasuredShape right{"right", state.sample(s).points, has_s ? s : std::vector<double>{}};
     judge(scene, states, {'a', std::to_string(points) + " points", right});
-    attempt([&] { judge(scene, states, wrong_file(scene, state, right, random)); });
-    judge(scene, states, other_curve(scene, random));
+    attempt([&] { judge(scene, states, file_with_error(scene, state, right, random)); });
+    judge(scene, states, file_of_other_curve(scene, random));
     attempt([&] { chains(scene, states, random); });
   }
 
   /// @return the exit status
   [[nodiscard]] int report() const {
     std::printf("class                     files | wrong: pass other cause\n");
-    int right = 0, wrong_fails = 0, wrong_passes = 0;
+    int right = 0, wrong_refusals = 0, wrong_acceptances = 0;
     for (const auto& [name, t] : tallies_) {
       std::printf("%-24s %6d | %11d %5d %5d\n", name.c_str(), t.tried, t.wrong_pass, t.wrong_other,
                   t.missed);
-      wrong_passes += t.wrong_pass;
+      wrong_acceptances += t.wrong_pass;
       if (name[0] != 'a' && name[0] != 'd') continue;
       right += t.tried;
-      wrong_fails += t.wrong_other;
+      wrong_refusals += t.wrong_other;
     }
     std::printf(
         "%d scenes without a stable equilibrium; %d wrong passes, %d of %d right files fail\n",
-        unsolved_, wrong_passes, wrong_fails, right);
-    return wrong_passes == 0 && wrong_fails <= tolerated_failures * right ? 0 : 1;
+        unsolved_, wrong_acceptances, wrong_refusals, right);
+    return wrong_acceptances == 0 && wrong_refusals <= tolerated_failures * right ? 0 : 1;
   }
 
  private:
@@ -226,8 +227,8 @@ class Verdicts {
     }
   }
 
-  static Trial wrong_file(const Scene& scene, const Equilibrium& state, const MeasuredShape& right,
-                          RandomNumbers& random) {
+  static Trial file_with_error(const Scene& scene, const Equilibrium& state,
+                               const MeasuredShape& right, RandomNumbers& random) {
     Trial trial{'b', "", right};
     const auto transform = [&](const Eigen::Matrix3d& matrix) {
       const Eigen::Vector3d origin = scene.grippers.front().position;
@@ -271,7 +272,7 @@ class Verdicts {
     return trial;
   }
 
-  static Trial other_curve(const Scene& scene, RandomNumbers& random) {
+  static Trial file_of_other_curve(const Scene& scene, RandomNumbers& random) {
     const std::vector<double> s = equal_arc_lengths(scene.length, 7 + random.below(95));
     const Gripper& grip = scene.grippers.front();
     const int kind = random.below(3);
@@ -302,7 +303,8 @@ class Verdicts {
     chain.force_model.joint_law = law;
     if (scene.stretch != Stretch::counted) {
       // Segments that do not stretch: those of the default c_c would, by up to 0.4 % here.
-      chain.force_model.c_c = 1e6 * (1 + scene.weight_per_length().norm() + scene.total_of_loads());
+      chain.force_model.c_c =
+          1e6 * (1 + scene.weight_per_length().norm() + scene.total_load_magnitude());
     }
     const bool has_s = random.chance(0.5);
     const auto file_of = [&](const Scene& of) {
@@ -316,7 +318,7 @@ class Verdicts {
     chain.scale_modulus(0.7);
     const MeasuredShape soft = file_of(chain);
     const double moved = rms_of((soft.points - right.points).colwise().norm().transpose());
-    if (!(moved > clearly * allowed * scene.length)) return;
+    if (!(moved > certainly_wrong_factor * allowed * scene.length)) return;
     judge(scene, states, {'e', what, soft, {"springs of", "stiffness"}});
   }
 
@@ -325,7 +327,8 @@ class Verdicts {
                              (trial.letter == 'b' || trial.letter == 'c' ? " " + trial.what : "");
     Tally& tally = tallies_[name];
     const auto is_away = [&](const Equilibrium& rod) {
-      return distance_from(trial.file, rod, scene.length) > clearly * allowed * scene.length;
+      return distance_from(trial.file, rod, scene.length) >
+             certainly_wrong_factor * allowed * scene.length;
     };
     if (!trial.is_right() && !std::ranges::all_of(states, is_away)) return;
     std::string wrong;

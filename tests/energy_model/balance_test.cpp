@@ -20,26 +20,26 @@
 namespace dlo::energy_model {
 namespace {
 
-const Action no_least;
+const Action zero_action;
 
 TEST(Imbalance, IsTheSumOfForcesAndOfMomentsAboutTheFirstPoint) {
   const Imbalance lever = imbalance_of(
-      {{{1, 0, 0}, {0, 2, 0}, {0, 0, 0}}, {{4, 0, 0}, {0, -1.5, 0}, {0, 0, 4}}}, no_least);
+      {{{1, 0, 0}, {0, 2, 0}, {0, 0, 0}}, {{4, 0, 0}, {0, -1.5, 0}, {0, 0, 4}}}, zero_action);
   EXPECT_DOUBLE_EQ(lever.force, 0.5);
   EXPECT_DOUBLE_EQ(lever.moment, 0.5);  // 4 - 3 * 1.5
   EXPECT_DOUBLE_EQ(lever.largest_force, 2);
   EXPECT_DOUBLE_EQ(lever.largest_moment, 6);
   EXPECT_DOUBLE_EQ(lever.share(), 0.25);
   const Imbalance couple = imbalance_of(
-      {{{0, 0, 0}, {1e-3, 0, 0}, {0, 0, 2}}, {{1, 0, 0}, {-1e-3, 0, 0}, {0, 0, -1}}}, no_least);
+      {{{0, 0, 0}, {1e-3, 0, 0}, {0, 0, 2}}, {{1, 0, 0}, {-1e-3, 0, 0}, {0, 0, -1}}}, zero_action);
   EXPECT_DOUBLE_EQ(couple.share(), 0.5);
   EXPECT_NE(couple.text().find("1 N m (0.5 of the largest moment)"), std::string::npos)
       << couple.text();
   const Imbalance rounded =
       imbalance_of({{{0, 0, 0}, {1e-3, 0, 0}, {0, 0, 1e-3}}}, {{0, 0, 0}, {1, 0, 0}, {2, 0, 0}});
   EXPECT_DOUBLE_EQ(rounded.share(), 1e-3);
-  EXPECT_TRUE(std::isnan(imbalance_of({{{0, 0, 0}, {NAN, 0, 0}, {0, 0, 0}}}, no_least).share()));
-  EXPECT_TRUE(std::isnan(imbalance_of({{{0, 0, 0}, {1, 0, 0}, {0, NAN, 0}}}, no_least).share()));
+  EXPECT_TRUE(std::isnan(imbalance_of({{{0, 0, 0}, {NAN, 0, 0}, {0, 0, 0}}}, zero_action).share()));
+  EXPECT_TRUE(std::isnan(imbalance_of({{{0, 0, 0}, {1, 0, 0}, {0, NAN, 0}}}, zero_action).share()));
 }
 
 /// Rod at rest, solved by a model that accepts it.

@@ -67,7 +67,7 @@ TEST(Certify, UsesTheFactorAtTheShapeItself) {
 }
 
 /// The straight shape of a rod that is clamped at its begin, before it is certified.
-SpanSolution straight_in(const Span& span) {
+SpanSolution straight_shape(const Span& span) {
   SpanSolution solution;
   solution.status = SolveStatus::converged;
   solution.terms = 20;
@@ -87,7 +87,7 @@ Span nearly_buckling() {
   return span;
 }
 
-SpanSolution upright(SpanWorkspace& workspace) {
+SpanSolution straight_upright_shape(SpanWorkspace& workspace) {
   const Span span = nearly_buckling();
   SpanSolution solution = std::move(solve_span(span, SpanOptions(), workspace).front());
   solution.factor.reset();
@@ -102,10 +102,10 @@ SpanSolution upright(SpanWorkspace& workspace) {
 // residual of almost zero. Only the Newton step shows this, and the direction counts as neutral.
 TEST(Certify, CallsAShapeWhoseNextStepIsNotSmallUndetermined) {
   SpanWorkspace workspace;
-  const SpanSolution solution = upright(workspace);
+  const SpanSolution solution = straight_upright_shape(workspace);
   const double load = solution.model->span().total_load();
   const Eigen::VectorXd soft =
-      direction_by_size(solution.factor->system.reduced_hessian(), 0).normalized();
+      eigenvector_by_magnitude(solution.factor->system.reduced_hessian(), 0).normalized();
   for (const double away : {1e-9, 1e-6}) {
     SpanSolution moved = solution;
     moved.x += away * soft;
@@ -124,12 +124,13 @@ TEST(Certify, CallsASaddleWhoseNextStepIsNotSmallUndetermined) {
   span.planar = true;
   span.weight = {0, -7.9, 0};
   SpanWorkspace workspace;
-  const SpanSolution straight = straight_in(span);
+  const SpanSolution straight = straight_shape(span);
   SpanSolution saddle = straight;
   certify(saddle, span.total_load(), workspace.factors());
   EXPECT_EQ(saddle.status, SolveStatus::saddle) << saddle.message;
   SpanSolution moved = straight;
-  moved.x += 1e-6 * direction_by_size(saddle.factor->system.reduced_hessian(), 0).normalized();
+  moved.x +=
+      1e-6 * eigenvector_by_magnitude(saddle.factor->system.reduced_hessian(), 0).normalized();
   certify(moved, span.total_load(), workspace.factors());
   EXPECT_LE(moved.residual, 1e-8);
   EXPECT_LT(moved.smallest_eigenvalue, -1e-4);
@@ -198,7 +199,7 @@ SpanSolution straight_through(const obstacle::Body& body, double stiffness) {
   obstacle.body = body;
   obstacle.stiffness = stiffness;
   span.soft_obstacles = {obstacle};
-  return straight_in(span);
+  return straight_shape(span);
 }
 
 // A rod through the axis of a soft cylinder, or in the middle plane of a soft box, is unstable: the
@@ -234,14 +235,14 @@ TEST(NegativeCurvature, IsThatOfTheRodInSpace) {
   int out_of_plane = 0;
   for (const SpanSolution& found : solve_span(span, options, workspace)) {
     if (found.status != SolveStatus::saddle || !found.model->span().planar) continue;
-    const std::optional<NegativeCurvature> way = negative_curvature(found);
-    if (!way || way->span.planar) continue;
+    const std::optional<NegativeCurvature> descent = negative_curvature(found);
+    if (!descent || descent->span.planar) continue;
     ++out_of_plane;
-    SpanEnergy model(way->span, found.terms);
+    SpanEnergy model(descent->span, found.terms);
     const Eigen::VectorXd x = model.prolong(*found.model, found.x);
     const auto lagrangian = [&](double step, const Eigen::VectorXd& multipliers) {
-      const SpanPoint at = model.evaluated(x + step * way->direction);
-      EXPECT_NEAR((at.jacobian * way->direction).norm(), 0, step == 0 ? 1e-8 : 1) << step;
+      const SpanPoint at = model.evaluated(x + step * descent->direction);
+      EXPECT_NEAR((at.jacobian * descent->direction).norm(), 0, step == 0 ? 1e-8 : 1) << step;
       const Eigen::VectorXd own =
           at.jacobian.transpose().completeOrthogonalDecomposition().solve(at.gradient);
       return std::pair(at.energy - multipliers.dot(at.residual), own);

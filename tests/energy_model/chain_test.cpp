@@ -96,7 +96,7 @@ TEST_P(ChainOfEveryLaw, IsASaddleWhereItLeavesThePlane) {
 
 TEST_P(ChainOfEveryLaw, EveryJointCarriesTheMomentOfWhatHangsBeyond) {
   const ChainProblem problem = heavy_chain(GetParam(), 15, 3);
-  const ChainResult result = test::usable(solve_chain(problem));
+  const ChainResult result = test::require_usable(solve_chain(problem));
   for (Eigen::Index i = 1; i < 15; ++i) {
     double moment = 0;
     for (Eigen::Index j = i + 1; j <= 15; ++j) {
@@ -120,7 +120,8 @@ TEST(Chain, HookeanLawsApproachTheRodInSecondOrder) {
   for (const JointLaw law : {JointLaw::hooke, JointLaw::linear, JointLaw::binormal}) {
     double before = 0;
     for (const int segments : {20, 40, 80, 160}) {
-      const ChainResult chain = test::usable(solve_chain(heavy_chain(law, segments, gamma)));
+      const ChainResult chain =
+          test::require_usable(solve_chain(heavy_chain(law, segments, gamma)));
       const double error = (chain.points.rightCols<1>() - tip.head<2>()).norm();
       if (before > 0) EXPECT_NEAR(std::log2(before / error), 2, 0.15) << segments;
       before = error;
@@ -164,9 +165,9 @@ TEST(Chain, StoppedEarlyIsAFailure) {
 }
 
 TEST(Chain, RefusesBadProblems) {
-  const auto refused = [](const auto& spoil) {
+  const auto refused = [](const auto& invalidate) {
     ChainProblem problem = heavy_chain(JointLaw::hooke, 5, 1);
-    spoil(problem);
+    invalidate(problem);
     EXPECT_THROW((void)solve_chain(problem), std::invalid_argument);
   };
   refused([](ChainProblem& p) { p.stiffness = 0; });

@@ -21,7 +21,7 @@ namespace dlo::energy_model {
 namespace {
 
 /// Returns a rod that is held against its natural curvature: without confinement it turns over.
-Problem bent_the_wrong_way(double gamma, double span) {
+Problem rod_against_natural_curvature(double gamma, double span) {
   Problem problem = test::two_clamps(gamma, span);
   problem.torsional_stiffness = 0.4;
   problem.natural_strains = {{0, -7, 0}, {0, 1.5, 0}};
@@ -39,7 +39,7 @@ double out_of_plane(const Equilibrium& rod) {
 
 TEST(ConfinedRod, IsAnEquilibriumThatIsUnstableWhereNothingConfinesIt) {
   for (const double gamma : {0.0, 30.0, 200.0}) {
-    const Problem problem = bent_the_wrong_way(gamma, 0.6);
+    const Problem problem = rod_against_natural_curvature(gamma, 0.6);
     const Equilibrium flat = test::converged(solve_energy(confined(problem)));
     EXPECT_LT(out_of_plane(flat), 1e-14);
     const Equilibrium free = test::converged(solve_energy(problem));
@@ -48,7 +48,7 @@ TEST(ConfinedRod, IsAnEquilibriumThatIsUnstableWhereNothingConfinesIt) {
     const Equilibrium confirmed = solve_exact(problem, {.start = &flat});
     EXPECT_EQ(confirmed.status, SolveStatus::saddle) << confirmed.message;
     EXPECT_NEAR(confirmed.energy.total(), flat.energy.total(), 1e-8);
-    EXPECT_LT(test::gap_between(confirmed, flat), 1e-8);
+    EXPECT_LT(test::largest_point_distance(confirmed, flat), 1e-8);
   }
 }
 
@@ -63,7 +63,7 @@ TEST(ConfinedRod, IsTheFreeOneWhereThatStaysInItsPlane) {
 
 // A shape out of the plane is not a valid initial guess.
 TEST(ConfinedRod, DoesNotFollowAShapeOutOfThePlane) {
-  const Problem problem = bent_the_wrong_way(30, 0.6);
+  const Problem problem = rod_against_natural_curvature(30, 0.6);
   const Equilibrium free = solve_energy(problem);
   const Equilibrium flat = test::converged(solve_energy(confined(problem), {.start = &free}));
   EXPECT_LT(out_of_plane(flat), 1e-14);
@@ -72,12 +72,12 @@ TEST(ConfinedRod, DoesNotFollowAShapeOutOfThePlane) {
 
 TEST(ConfinedRod, RefusesWhatHasNoPlane) {
   const auto refused = [](const Problem& problem, auto&& solve) {
-    return test::says(
+    return test::has_all(
         test::error_of<std::invalid_argument>([&] { return solve(confined(problem)); }),
         {"confined_to_plane"});
   };
   const auto energy = [](const Problem& problem) { return solve_energy(problem); };
-  Problem twisted = bent_the_wrong_way(0, 0.6);
+  Problem twisted = rod_against_natural_curvature(0, 0.6);
   for (Grip& grip : twisted.grips) grip.frame = FrameHold{};
   EXPECT_TRUE(refused(twisted, energy));
   Problem in_space = test::two_clamps(10, 0.6);

@@ -86,13 +86,13 @@ class LyingRod {
 };
 
 TEST(Contact, LyingRodIsThatOfTheElastica) {
-  int looked = 0;
+  int compared = 0;
   for (const double gamma : {10.0, 100.0, 1e3, 1e4, 1e5}) {
     for (const double height : {0.01, 0.1, 0.3}) {
       const LyingRod exact(gamma, height);
       if (!(exact.residual < 1e-10) || exact.b > 1) continue;  // if b > 1 only the tip touches
       SCOPED_TRACE("Gamma " + std::to_string(gamma) + ", height " + std::to_string(height));
-      ++looked;
+      ++compared;
       const Problem problem = over_floor(gamma, height);
       const Equilibrium result = test::converged(solve_energy(problem));
       test::expect_only_pushed(problem, result);
@@ -111,7 +111,7 @@ TEST(Contact, LyingRodIsThatOfTheElastica) {
       EXPECT_NEAR(tip.points(1, 0), -height, 1e-12);
     }
   }
-  EXPECT_GE(looked, 11);
+  EXPECT_GE(compared, 11);
 }
 
 // A rod that is clamped level on the floor exerts no force on its clamp: the floor carries it.
@@ -229,11 +229,11 @@ TEST(Contact, APointIsReleasedByAnObstacleThatMovesAway) {
 }
 
 /// A straight rod along a level floor, so deep below its top, in lengths.
-Equilibrium judged_below_a_floor(double length, double depth) {
+Equilibrium judge_rod_below_floor(double length, double depth) {
   Problem problem = heavy_cantilever(1, 0);
   problem.length = length;
   problem.obstacles = {{obstacle::Body::half_space({0, depth * length, 0}, {0, 1, 0})}};
-  Equilibrium shape = test::start_along({{0, 0, 0}, {1, 0, 0}});
+  Equilibrium shape = test::start_along_polyline({{0, 0, 0}, {1, 0, 0}});
   judge_penetration(problem, shape);
   return shape;
 }
@@ -242,7 +242,7 @@ TEST(Penetration, IsAllowedAsAShareOfTheLength) {
   for (const double length : {0.02, 1.0, 50.0}) {
     for (const double share : {0.5, 2.0}) {
       const double depth = share * allowed_penetration;
-      const Equilibrium shape = judged_below_a_floor(length, depth);
+      const Equilibrium shape = judge_rod_below_floor(length, depth);
       EXPECT_NEAR(shape.penetration, depth * length, 1e-6 * depth * length);
       EXPECT_EQ(shape.status, share < 1 ? SolveStatus::converged : SolveStatus::not_verified)
           << length << ": " << shape.message;

@@ -83,7 +83,7 @@ TEST(Couple, EnergyFindsWhatShootingFindsOnRandomCantilevers) {
     const std::vector<Equilibrium> all = all_exact(problem);
     ASSERT_FALSE(all.empty());
     const bool among = std::any_of(all.begin(), all.end(), [&](const Equilibrium& exact) {
-      return succeeded(exact.status) && test::gap_between(energy, exact) < 1e-8 &&
+      return succeeded(exact.status) && test::largest_point_distance(energy, exact) < 1e-8 &&
              std::abs(energy.energy.total() - exact.energy.total()) < 1e-8;
     });
     EXPECT_TRUE(among) << energy.message;
@@ -103,10 +103,10 @@ TEST(Couple, BetweenClampsShootingConfirmsTheEnergysShape) {
   curved.torsional_stiffness = 0.8;
   for (const Problem& held : {clamps, pins, overhang, curved}) {
     const Problem problem = with_couple(held, 0.35, 3);
-    const Equilibrium energy = test::usable(solve_energy(problem));
+    const Equilibrium energy = test::require_usable(solve_energy(problem));
     EXPECT_LT(test::balance_of(problem, energy, 0.02).worst(), 1e-7);
-    const Equilibrium exact = test::usable(solve_exact(problem, {.start = &energy}));
-    EXPECT_LT(test::gap_between(energy, exact), 1e-8);
+    const Equilibrium exact = test::require_usable(solve_exact(problem, {.start = &energy}));
+    EXPECT_LT(test::largest_point_distance(energy, exact), 1e-8);
     for (std::size_t i = 0; i < 2; ++i) {
       EXPECT_LT((energy.grips[i].torque - exact.grips[i].torque).norm(), 1e-6);
     }
@@ -126,9 +126,9 @@ TEST(Couple, PotentialIsZeroInTheDirectionOfTheClampBefore) {
     const Eigen::Vector3d tilted = Eigen::Vector3d(1, 0.4, 0).normalized();
     problem.grips.push_back({0.5, {0.42, 0.1, 0}, tilted});
     problem = with_couple(problem, 0.7, 1.5);
-    const Equilibrium energy = test::usable(solve_energy(problem));
-    const Equilibrium exact = test::usable(solve_exact(problem, {.start = &energy}));
-    ASSERT_LT(test::gap_between(energy, exact), 1e-8);
+    const Equilibrium energy = test::require_usable(solve_energy(problem));
+    const Equilibrium exact = test::require_usable(solve_exact(problem, {.start = &energy}));
+    ASSERT_LT(test::largest_point_distance(energy, exact), 1e-8);
     const Eigen::Vector3d tangent = energy.sample(std::vector<double>{0.7}).tangents.col(0);
     const double angle = std::atan2(tilted.cross(tangent).z(), tilted.dot(tangent));
     EXPECT_NEAR(energy.energy.load, -1.5 * angle, 1e-9) << natural;
@@ -145,8 +145,8 @@ TEST(Couple, PotentialBetweenPinsIsCountedFromTheirChord) {
     problem.grips[1].position = problem.grips[0].position + 0.8 * chord;
     for (Grip& grip : problem.grips) grip.direction.reset();
     problem = with_couple(problem, 0.35, 3);
-    const Equilibrium energy = test::usable(solve_energy(problem));
-    const Equilibrium exact = test::usable(solve_exact(problem, {.start = &energy}));
+    const Equilibrium energy = test::require_usable(solve_energy(problem));
+    const Equilibrium exact = test::require_usable(solve_exact(problem, {.start = &energy}));
     const Samples at = energy.sample(std::vector<double>{0, 0.35});
     const Eigen::Vector3d first = at.tangents.col(0);
     const Eigen::Vector3d there = at.tangents.col(1);
@@ -170,7 +170,7 @@ TEST(Couple, OutOfThePlaneIsForShootingAloneAndNotCalledStable) {
   const std::vector<Equilibrium> all = all_exact(problem);
   ASSERT_EQ(all.size(), 1U);
   EXPECT_EQ(all.front().status, SolveStatus::not_verified);
-  EXPECT_EQ(test::gap_between(all.front(), exact), 0);
+  EXPECT_EQ(test::largest_point_distance(all.front(), exact), 0);
 }
 
 TEST(Couple, IsRefusedWhereItIsNotKnown) {

@@ -168,9 +168,9 @@ TEST(DenseProducts, AddWeighed) {
                               b.cwiseProduct(left_of_b * right_of_b.transpose());
       const MatrixXd around = wholes[2];
       for (const DenseKernel* kernel : kernels) {
-        kernel->add_weighed({columns_of(a), columns_of(left_of_a), columns_of(right_of_a)},
-                            {columns_of(b), columns_of(left_of_b), columns_of(right_of_b)},
-                            result_columns(sum));
+        kernel->add_weighted_products(
+            {columns_of(a), columns_of(left_of_a), columns_of(right_of_a)},
+            {columns_of(b), columns_of(left_of_b), columns_of(right_of_b)}, result_columns(sum));
         EXPECT_LT((sum - wanted).norm(), rounding) << rows << ' ' << n;
         sum = around.block(2, 1, rows, n);
         EXPECT_EQ(wholes[2], around) << "written beside the result";

@@ -17,7 +17,7 @@ namespace dlo::energy_model {
 namespace {
 
 /// A clamp that starts at once, which strikes the rod.
-Dynamics struck_at(const std::vector<double>& breaks, double frame) {
+Dynamics simulate_impact(const std::vector<double>& breaks, double frame) {
   constexpr double start = 0.3;
   MovingRod rod;
   rod.problem = test::heavy_cantilever(0, 0);
@@ -40,11 +40,11 @@ Dynamics struck_at(const std::vector<double>& breaks, double frame) {
 TEST(DynamicsRounding, FramesAndBreaksThatDifferByRoundingAreOneInstant) {
   constexpr double sum = 0.1 + 0.2;
   static_assert(sum > 0.3);
-  const Dynamics plain = test::converged(struck_at({0.3}, 0.3));
+  const Dynamics plain = test::converged(simulate_impact({0.3}, 0.3));
   const std::vector<std::pair<std::vector<double>, double>> alike = {
       {{0.3}, sum}, {{sum}, 0.3}, {{0.3, 0.3}, 0.3}, {{0.3, sum}, 0.3}, {{sum, 0.3}, sum}};
   for (std::size_t i = 0; i < alike.size(); ++i) {
-    const Dynamics rounded = struck_at(alike[i].first, alike[i].second);
+    const Dynamics rounded = simulate_impact(alike[i].first, alike[i].second);
     ASSERT_EQ(rounded.status, SolveStatus::converged) << i << ": " << rounded.message;
     EXPECT_LT(rounded.energy_error, 1e-6) << i;
     for (std::size_t k = 0; k < 2; ++k) {

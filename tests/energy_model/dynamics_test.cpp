@@ -33,7 +33,7 @@ MovingRod moving_cantilever(double gamma) {
 
 /// Returns a rod between two clamps, or two pins, that are nearer to each other than the rod is
 /// long.
-MovingRod closed_rod(double gamma) {
+MovingRod rod_between_clamps(double gamma) {
   MovingRod rod;
   rod.problem = test::two_clamps(gamma, 0.8);
   rod.inertia.mass_per_length = 1;
@@ -83,9 +83,9 @@ TEST(Dynamics, GoesOnFromTheShapeAndTheVelocitiesOfAMotion) {
   constexpr double middle = 0.7;
   constexpr double h = 1e-4;
   for (const bool is_closed : {false, true}) {
-    MovingRod rod = is_closed ? closed_rod(3) : moving_cantilever(3);
+    MovingRod rod = is_closed ? rod_between_clamps(3) : moving_cantilever(3);
     rod.material_damping = 0.02;
-    const GripMotion first = standing(rod.problem.grips.front().position);
+    const GripMotion first = fixed_grip(rod.problem.grips.front().position);
     rod.motions = {[first](double time) {
       const Vector3d way(0.05, 0.03, 0.04);
       GripPose pose = first(time);
@@ -102,8 +102,8 @@ TEST(Dynamics, GoesOnFromTheShapeAndTheVelocitiesOfAMotion) {
     options.velocities = velocities_between(whole.frames[0], whole.frames[2]);
     const std::vector<double> s{0.2, 0.5, 0.8, 1};
     const Eigen::Matrix3Xd end = whole.frames.back().sample(s).points;
-    const Dynamics rest_of_it = run(later, whole.frames[1].sample, {1}, options);
-    EXPECT_LT((rest_of_it.frames.back().sample(s).points - end).norm(), 1e-5) << is_closed;
+    const Dynamics second_part = run(later, whole.frames[1].sample, {1}, options);
+    EXPECT_LT((second_part.frames.back().sample(s).points - end).norm(), 1e-5) << is_closed;
     // Without the initial velocities the motion is different.
     const Dynamics at_rest = run(later, whole.frames[1].sample, {1});
     EXPECT_GT((at_rest.frames.back().sample(s).points - end).norm(), 1e-3) << is_closed;
@@ -236,11 +236,12 @@ TEST(Dynamics, APinThatMovesInSpaceTurnsNothing) {
 
 TEST(Dynamics, ClampsAtBothEndsMoveTheRodAndHoldIt) {
   for (const bool spatial : {false, true}) {
-    MovingRod rod = closed_rod(5);
+    MovingRod rod = rod_between_clamps(5);
     rod.material_damping = 0.003;
     const Vector3d about = spatial ? Vector3d(1, 2, 2) : Vector3d(0, 0, 1);
-    rod.motions = {standing(Vector3d::Zero()), moving({0.8, 0, 0}, Vector3d(-1, 1, spatial ? 1 : 0),
-                                                      swinging(0.1, 4), about, swinging(0.5, 3))};
+    rod.motions = {fixed_grip(Vector3d::Zero()),
+                   moving({0.8, 0, 0}, Vector3d(-1, 1, spatial ? 1 : 0), swinging(0.1, 4), about,
+                          swinging(0.5, 3))};
     const Dynamics result =
         run(rod, solve_energy(rod.problem).sample, equal_times(2, 0.3), {.tolerance = 1e-6});
     EXPECT_LT(result.energy_error, 1e-6) << spatial;
@@ -256,10 +257,10 @@ TEST(Dynamics, ClampsAtBothEndsMoveTheRodAndHoldIt) {
 
 TEST(Dynamics, DampedReactionsConvergeToThoseOfTheEquilibrium) {
   for (const bool pinned : {false, true}) {
-    MovingRod rod = closed_rod(20);
+    MovingRod rod = rod_between_clamps(20);
     rod.material_damping = 0.02;
     if (pinned) rod.problem.grips[1].direction.reset();
-    const Equilibrium rest = test::usable(solve_energy(rod.problem));
+    const Equilibrium rest = test::require_usable(solve_energy(rod.problem));
     const Dynamics result = run(rod, rest.sample, {10}, {.terms = 16, .tolerance = 1e-6});
     for (std::size_t i = 0; i < 2; ++i) {
       const Reaction& has = result.frames[0].grips[i];
@@ -318,7 +319,7 @@ TEST(Dynamics, SquaredDragIsAcrossTheRod) {
 // equilibrium shapes, its distance from them is proportional to the square of the speed; if it
 // starts without velocity, it vibrates about them.
 TEST(Dynamics, InMotionItFollowsItsShapesAtRestFromTheBegin) {
-  MovingRod rod = closed_rod(5);
+  MovingRod rod = rod_between_clamps(5);
   constexpr double speed = 0.005;
   const auto at = [](double time) { return MotionValue{speed * time, speed, 0}; };
   rod.motions = {nullptr, moving(rod.problem.grips[1].position, -Vector3d::UnitX(), at,
@@ -371,7 +372,7 @@ TEST(Dynamics, AClampThatStartsAtOnceStrikesTheRod) {
 TEST(Dynamics, AStepThatEndsAtABreakUsesOnlyTheMotionBefore) {
   constexpr double stop = 0.1;
   for (const bool pinned : {false, true}) {
-    MovingRod rod = pinned ? closed_rod(5) : moving_cantilever(5);
+    MovingRod rod = pinned ? rod_between_clamps(5) : moving_cantilever(5);
     rod.material_damping = 0.01;
     rod.air_drag = 1;
     rod.breaks = {stop};
@@ -557,9 +558,10 @@ TEST(Dynamics, RefusesWhatItDoesNotKnow) {
 }
 
 TEST(Dynamics, GripsThatPartFartherThanTheRodEndTheRunWithWhatCameBefore) {
-  MovingRod rod = closed_rod(1);
-  rod.motions = {standing(Vector3d::Zero()), moving({0.8, 0, 0}, Vector3d::UnitX(),
-                                                    smooth_step(0, 1, 0.5), Vector3d::UnitZ(), {})};
+  MovingRod rod = rod_between_clamps(1);
+  rod.motions = {
+      fixed_grip(Vector3d::Zero()),
+      moving({0.8, 0, 0}, Vector3d::UnitX(), smooth_step(0, 1, 0.5), Vector3d::UnitZ(), {})};
   const Dynamics result = simulate(rod, solve_energy(rod.problem).sample, equal_times(10, 0.1),
                                    {.terms = 8, .tolerance = 1e-5});
   EXPECT_EQ(result.status, SolveStatus::failed);

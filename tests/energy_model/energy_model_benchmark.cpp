@@ -90,7 +90,7 @@ double one_clamp() {
   return median_seconds(9, 100, [&] { benchmark::DoNotOptimize(solver.solve(problem)); });
 }
 
-benchmark::Counter in_units_of(double seconds) {
+benchmark::Counter ratio_counter(double seconds) {
   return {seconds, benchmark::Counter::kIsIterationInvariantRate | benchmark::Counter::kInvert};
 }
 
@@ -107,7 +107,7 @@ void report(benchmark::State& state, const Equilibrium& result) {
   if (!succeeded(result.status)) state.SkipWithError(result.message.c_str());
   state.counters["evaluations"] = result.evaluations;
   state.counters["terms"] = result.terms;
-  state.counters["plain_steps"] = in_units_of(plain_step());
+  state.counters["plain_steps"] = ratio_counter(plain_step());
 }
 
 void cold_clamp(benchmark::State& state, double gamma) {
@@ -144,7 +144,7 @@ void cold(benchmark::State& state, const Problem& problem) {
   EnergySolver solver;
   for (auto _ : state) benchmark::DoNotOptimize(solver.solve(problem));
   report(state, solver.solve(problem));
-  state.counters["one_clamp"] = in_units_of(one_clamp());
+  state.counters["one_clamp"] = ratio_counter(one_clamp());
 }
 BENCHMARK_CAPTURE(cold, two_clamps_planar, two_clamps(10, 0.8, 0))->Unit(benchmark::kMicrosecond);
 BENCHMARK_CAPTURE(cold, two_clamps_spatial, two_clamps(10, 0.8, 0.3))
@@ -191,7 +191,7 @@ void twisted(benchmark::State& state) {
   report(state, solver.solve(problem));
   EnergySolver twin;
   state.counters["twins"] =
-      in_units_of(median_seconds(9, 20, [&] { benchmark::DoNotOptimize(twin.solve(free)); }));
+      ratio_counter(median_seconds(9, 20, [&] { benchmark::DoNotOptimize(twin.solve(free)); }));
 }
 BENCHMARK(twisted)->Arg(60)->Arg(180)->Unit(benchmark::kMicrosecond);
 
@@ -206,7 +206,7 @@ void random_clamped_rods(benchmark::State& state, dlo::test::RandomSpace space, 
     certified = 0;
     EnergySolver solver;
     for (std::uint64_t number = 0; number < count; ++number) {
-      const Problem problem = dlo::test::random_between_clamps(number, space, pin);
+      const Problem problem = dlo::test::random_clamped_rod(number, space, pin);
       const auto begin = std::chrono::steady_clock::now();
       const Equilibrium result = solver.solve(problem);
       const std::chrono::duration<double> taken = std::chrono::steady_clock::now() - begin;

@@ -19,7 +19,7 @@ TEST(Energy, AgreesWithExactAtEveryClampAngle) {
       const Problem problem = heavy_cantilever(gamma, degrees);
       const Equilibrium energy = test::converged(solve_energy(problem));
       const Equilibrium exact = test::converged(solve_exact(problem));
-      EXPECT_LT(test::gap_between(energy, exact), gamma <= 10 ? 1e-9 : 1e-8);
+      EXPECT_LT(test::largest_point_distance(energy, exact), gamma <= 10 ? 1e-9 : 1e-8);
       EXPECT_NEAR(energy.energy.total(), exact.energy.total(), 1e-10 * (1 + gamma));
       EXPECT_NEAR(energy.energy.bending, exact.energy.bending, 1e-9 * (1 + gamma));
       EXPECT_LT((energy.grips[0].torque - exact.grips[0].torque).norm(), 1e-9 * (1 + gamma));
@@ -41,7 +41,7 @@ TEST(Energy, FallsExponentiallyInTheNumberOfTerms) {
   for (const int terms : {2, 4, 8, 12, 16}) {
     const Equilibrium energy = test::converged(solve_energy(problem, {.terms = terms}));
     EXPECT_EQ(energy.terms, terms);
-    const double error = test::gap_between(energy, exact);
+    const double error = test::largest_point_distance(energy, exact);
     EXPECT_LT(error, previous / 10) << terms << " terms";
     previous = error;
   }
@@ -140,8 +140,8 @@ TEST(Energy, NextToBucklingTheErrorStatedCoversTheTrueOne) {
 }
 
 // Heavy rods between grips, slack to taut, up to the stiffness below which catenaries are used
-// (line_stiffness). The number of terms is chosen automatically, or is insufficient. The reference
-// has twice the number of terms, whose error is small in comparison.
+// (catenary_limit_stiffness). The number of terms is chosen automatically, or is insufficient. The
+// reference has twice the number of terms, whose error is small in comparison.
 TEST(Energy, TheErrorStatedIsTheTrueOneWithinAFactorOfAThousand) {
   constexpr double rounding = 1e-12;
   const std::vector<double> s = equal_arc_lengths(1, 201);
@@ -191,9 +191,9 @@ TEST(Energy, StoppedEarlyIsAFailureThatSaysSo) {
 }
 
 TEST(Energy, RefusesWhatItDoesNotKnow) {
-  const auto refused = [](const auto& spoil) {
+  const auto refused = [](const auto& invalidate) {
     Problem problem = heavy_cantilever(1, 0);
-    spoil(problem);
+    invalidate(problem);
     EXPECT_THROW((void)solve_energy(problem), std::invalid_argument);
   };
   refused([](Problem& p) { p.length = -1; });

@@ -59,7 +59,7 @@ inline energy_model::Section section_at(const energy_model::Problem& problem, do
 }
 
 /// Returns Problem::natural_strains at an arc length; natural strains of sections are ignored.
-inline Eigen::Vector3d natural_at(const energy_model::Problem& problem, double at) {
+inline Eigen::Vector3d natural_strain_at(const energy_model::Problem& problem, double at) {
   Eigen::Vector3d natural = Eigen::Vector3d::Zero();
   for (std::size_t j = 0; j < problem.natural_strains.size(); ++j) {
     natural += std::legendre(static_cast<unsigned>(j), 2 * at / problem.length - 1) *
@@ -74,7 +74,7 @@ inline Eigen::Vector3d bending_moment(const energy_model::Problem& problem, doub
                                       const Eigen::Vector3d& t, const Eigen::Vector3d& rate,
                                       const Eigen::Vector3d& d1) {
   const energy_model::Section section = section_at(problem, at);
-  const Eigen::Vector3d natural = natural_at(problem, at);
+  const Eigen::Vector3d natural = natural_strain_at(problem, at);
   const Eigen::Vector3d d2 = t.cross(d1);
   // t' = u2 d1 - u1 d2
   const double first = section.bending_stiffness * (-rate.dot(d2) - natural.x());

@@ -40,8 +40,8 @@ struct Confirmed {
   /// energy to 1e-8 of it.
   void confirm(const Problem& problem, const Equilibrium* start = nullptr) {
     // A search has a time limit, because it may not end; a solve from an initial guess always ends.
-    constexpr double endless = std::numeric_limits<double>::infinity();
-    const double limit = start != nullptr ? endless : 20;
+    constexpr double no_limit = std::numeric_limits<double>::infinity();
+    const double limit = start != nullptr ? no_limit : 20;
     const Equilibrium energy = solve_energy(problem, {.time_limit = limit, .start = start});
     refused += succeeded(energy.status) ? 0 : 1;
     if (!succeeded(energy.status) || energy.contacts.empty()) return;
@@ -82,88 +82,88 @@ struct Confirmed {
 };
 
 TEST(ExactContact, ConfirmsRodsThatTouchAFloorOrLieOnIt) {
-  Confirmed seen{.place_error = 1e-7, .relative_to_weight = true};
+  Confirmed confirmation{.place_error = 1e-7, .relative_to_weight = true};
   for (const double gamma : {0.3, 1.0, 3.0, 10.0, 100.0, 1e3, 1e4, 1e5}) {
     for (const double height : {0.01, 0.03, 0.1, 0.3}) {
       SCOPED_TRACE("Gamma " + std::to_string(gamma) + ", height " + std::to_string(height));
       // A soft rod that hangs down steeply rotates about the vertical almost without a change of
       // energy.
-      seen.may_be_near_singular = gamma >= 1e4 && height == 0.3;
-      seen.confirm(over_floor(gamma, height));
+      confirmation.may_be_near_singular = gamma >= 1e4 && height == 0.3;
+      confirmation.confirm(over_floor(gamma, height));
     }
   }
-  EXPECT_EQ(seen.refused, 0);
-  EXPECT_GT(seen.points, 2);
-  EXPECT_GT(seen.lying, 10);
+  EXPECT_EQ(confirmation.refused, 0);
+  EXPECT_GT(confirmation.points, 2);
+  EXPECT_GT(confirmation.lying, 10);
 }
 
 // Out of a plane: a clamp that points downwards and a load from the side, above a floor and next to
 // a wall.
 TEST(ExactContact, ConfirmsARodThatALoadTakesOutOfThePlane) {
-  Confirmed seen;
+  Confirmed confirmation;
   for (const double side : {0.5, 2.0, 8.0}) {
     SCOPED_TRACE("side load " + std::to_string(side));
     Problem problem = over_floor(20, 0.15);
     problem.grips[0].direction = Eigen::Vector3d(1, -0.1, 0.2).normalized();
     problem.loads = {{0.6, {0, 0, side}}};
     problem.obstacles.push_back({obstacle::Body::half_space({0, 0, 2}, {0, 0, -1})});
-    seen.confirm(problem);
+    confirmation.confirm(problem);
   }
-  EXPECT_EQ(seen.confirmed, 3);
+  EXPECT_EQ(confirmation.confirmed, 3);
 }
 
 // One to three grips of all kinds above floors and next to walls.
 TEST(ExactContact, ConfirmsRandomRodsAgainstPlanes) {
   for (const bool space : {false, true}) {
-    Confirmed seen;
+    Confirmed confirmation;
     for (unsigned seed = 0; seed < 40; ++seed) {
       SCOPED_TRACE("seed " + std::to_string(seed) + (space ? " in space" : " in the plane"));
-      seen.confirm(test::random_touching_problem(seed, space, 300));
+      confirmation.confirm(test::random_touching_problem(seed, space, 300));
     }
-    EXPECT_LE(seen.refused, 1);
-    EXPECT_GE(seen.touching, 14);
-    EXPECT_EQ(seen.confirmed, seen.touching);
-    EXPECT_GE(seen.points, 5);
-    EXPECT_GE(seen.lying, 5);
+    EXPECT_LE(confirmation.refused, 1);
+    EXPECT_GE(confirmation.touching, 14);
+    EXPECT_EQ(confirmation.confirmed, confirmation.touching);
+    EXPECT_GE(confirmation.points, 5);
+    EXPECT_GE(confirmation.lying, 5);
   }
 }
 
 // Cylinders, balls and capsules, touched at a point or wrapped.
 TEST(ExactContact, ConfirmsRandomRodsOverBodies) {
   for (const bool space : {false, true}) {
-    Confirmed seen;
+    Confirmed confirmation;
     for (int seed = 0; seed < test::draws(40); ++seed) {
       SCOPED_TRACE("seed " + std::to_string(seed) + (space ? " in space" : " in the plane"));
       const std::optional<Problem> problem =
           test::random_problem_with_body(static_cast<unsigned>(seed), space);
-      if (problem) seen.confirm(*problem);
+      if (problem) confirmation.confirm(*problem);
     }
-    EXPECT_GE(seen.touching, test::draws(30));
-    EXPECT_EQ(seen.confirmed, seen.touching);
-    EXPECT_GE(seen.points, test::draws(20));
+    EXPECT_GE(confirmation.touching, test::draws(30));
+    EXPECT_EQ(confirmation.confirmed, confirmation.touching);
+    EXPECT_GE(confirmation.points, test::draws(20));
   }
 }
 
 // The part of a rod that is wrapped around a peg has the peg's curvature. In space, where the
 // tension is not perpendicular to the axis, it is a helix.
 TEST(ExactContact, ConfirmsTautRodsAroundAPeg) {
-  Confirmed seen;
+  Confirmed confirmation;
   constexpr double radius = 0.05;
   for (const double aside : {0.0, 0.02}) {
     SCOPED_TRACE("aside " + std::to_string(aside));
-    Problem problem = test::drawn_over_peg(radius, 3e3, aside);
+    Problem problem = test::rod_pulled_over_peg(radius, 3e3, aside);
     problem.weight_per_length = {0, -10, 0};
     const Equilibrium start = test::start_over_peg(radius);
-    seen.confirm(problem, &start);
+    confirmation.confirm(problem, &start);
   }
-  EXPECT_EQ(seen.lying, 2);
-  EXPECT_EQ(seen.confirmed, 2);
+  EXPECT_EQ(confirmation.lying, 2);
+  EXPECT_EQ(confirmation.confirmed, 2);
 }
 
 // Two horizontal clamps above a floor: free spans on both sides of the contact interval, and a taut
 // rod with a point contact, in units of a real rod.
 TEST(ExactContact, ConfirmsACableBetweenTwoClampsOverAFloor) {
-  Confirmed seen;
+  Confirmed confirmation;
   for (const double apart : {0.9, 0.95, 0.99}) {
     for (const double depth : {0.02, 0.1, 0.2}) {
       SCOPED_TRACE("apart " + std::to_string(apart) + ", depth " + std::to_string(depth));
@@ -174,17 +174,17 @@ TEST(ExactContact, ConfirmsACableBetweenTwoClampsOverAFloor) {
       const Eigen::Vector3d level = Eigen::Vector3d::UnitX();
       cable.grips = {{0, {1, 1, 0}, level}, {2, {1 + 2 * apart, 1, 0}, level}};
       cable.obstacles = {{obstacle::Body::half_space({0, 1 - depth, 0}, {0, 1, 0})}};
-      seen.confirm(cable);
+      confirmation.confirm(cable);
     }
   }
-  EXPECT_GE(seen.lying, 3);
-  EXPECT_EQ(seen.confirmed, seen.touching);
+  EXPECT_GE(confirmation.lying, 3);
+  EXPECT_EQ(confirmation.confirmed, confirmation.touching);
 }
 
 // Strips that stand, lie or are held askew, and rods whose middle is stiffer, on a floor and over a
 // peg: both models have the same forces, and the same directors.
 TEST(ExactContact, ConfirmsStripsAndSections) {
-  Confirmed seen;
+  Confirmed confirmation;
   for (const double roll : {0.0, 0.4, 1.2}) {
     for (const bool peg : {false, true}) {
       SCOPED_TRACE("roll " + std::to_string(roll) + (peg ? ", peg" : ", floor"));
@@ -195,7 +195,7 @@ TEST(ExactContact, ConfirmsStripsAndSections) {
       if (peg) {
         strip.obstacles = {{obstacle::Body::cylinder({0.5, -0.12, 0}, {0.1, 0, 1}, 0.1)}};
       }
-      seen.confirm(strip);
+      confirmation.confirm(strip);
     }
   }
   for (const double stiffer : {0.3, 3.0}) {
@@ -203,10 +203,10 @@ TEST(ExactContact, ConfirmsStripsAndSections) {
     Problem rod = over_floor(30, 0.1);
     rod.sections = {{.begin = 0.1, .end = 0.3, .bending_stiffness = stiffer}};
     rod.sections[0].weight_per_length = {0, -60, 0};
-    seen.confirm(rod);
+    confirmation.confirm(rod);
   }
-  EXPECT_GE(seen.touching, 7);
-  EXPECT_EQ(seen.confirmed, seen.touching);
+  EXPECT_GE(confirmation.touching, 7);
+  EXPECT_EQ(confirmation.confirmed, confirmation.touching);
 }
 
 // A weightless rod that is lifted by more than the ball's radius comes down along the ball, about
@@ -221,7 +221,7 @@ TEST(ExactContact, ARodOverABallFallsOffWhereItsCentreIsAboveTheClampsAxis) {
     return problem;
   };
   for (const bool ball : {true, false}) {
-    Equilibrium last = test::usable(solve_energy(with(ball, -0.5)));
+    Equilibrium last = test::require_usable(solve_energy(with(ball, -0.5)));
     for (const double height : {-0.5, -0.3, -0.1, 0.1, 0.3, 0.5}) {
       SCOPED_TRACE((ball ? "ball " : "peg ") + std::to_string(height));
       Equilibrium exact = solve_exact(with(ball, height), {.start = &last});
@@ -299,7 +299,7 @@ TEST(ExactContact, ToleranceIsThatOfTheIntegratorWhereTheRodTouchesToo) {
   const Equilibrium energy = solve_energy(problem);
   const Eigen::Matrix3Xd fine = solve_exact(problem, {.start = &energy}).sample(at).points;
   const Equilibrium coarse =
-      test::usable(solve_exact(problem, {.tolerance = 1e-3, .start = &energy}));
+      test::require_usable(solve_exact(problem, {.tolerance = 1e-3, .start = &energy}));
   const double off = (coarse.sample(at).points - fine).colwise().norm().maxCoeff();
   EXPECT_GT(off, 1e-12);  // it is not taken as 1e-13
   EXPECT_LT(off, 1e-3);
@@ -315,7 +315,7 @@ TEST(ExactContact, EndsWithItsTimeLimit) {
 TEST(ExactContact, DetectsNoContactWithoutAStart) {
   const std::string error =
       dlo::test::error_of<std::invalid_argument>([] { return solve_exact(over_floor(10, 0.1)); });
-  EXPECT_TRUE(dlo::test::says(error, {"number of obstacles", "a start with its contacts"}));
+  EXPECT_TRUE(dlo::test::has_all(error, {"number of obstacles", "a start with its contacts"}));
 }
 
 }  // namespace

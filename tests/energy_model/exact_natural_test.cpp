@@ -204,7 +204,7 @@ TEST(ExactNatural, RandomRodsObeyKirchhoffsEquations) {
     if (result.status != SolveStatus::converged) continue;
     ++solved;
     EXPECT_LT(test::balance_of(problem, result, 0.01).worst(), 1e-9) << number;
-    const test::RodEnd end = test::carried_along(problem, result, first_frame(problem));
+    const test::RodEnd end = test::integrate_kirchhoff(problem, result, first_frame(problem));
     EXPECT_LT(end.apart, 1e-8) << number;
     EXPECT_LT(end.force.norm(), 1e-8) << number;
     EXPECT_LT(end.moment.norm(), 1e-7) << number;
@@ -262,7 +262,7 @@ TEST(ExactNatural, WhatIsUnstableOfTheStraightRodIsUnstable) {
   upright.natural_strains = {Eigen::Vector3d::Zero()};
   for (const Equilibrium& shape : straight) {
     const Equilibrium curved = solve_exact(upright, {.start = &shape});
-    EXPECT_LT(test::gap_between(shape, curved), 1e-10);
+    EXPECT_LT(test::largest_point_distance(shape, curved), 1e-10);
     EXPECT_EQ(shape.status, curved.status);
   }
 }
@@ -273,7 +273,7 @@ TEST(ExactNatural, UnitsAndPlaceDoNotMatter) {
   const test::Placement other{0.7, 3e-3, turn.toRotationMatrix(), {1, 2, -3}};
   const Equilibrium expected = test::converged(solve_exact(own));
   const Equilibrium result = test::converged(solve_exact(other.of(own)));
-  const auto found = other.between(expected, result);
+  const auto found = other.differences(expected, result);
   EXPECT_LT(found.points, 1e-10);
   EXPECT_LT(found.curvature, 7e-9);
   EXPECT_LT(found.energy, 2e-10);

@@ -16,7 +16,7 @@
 namespace dlo::energy_model {
 namespace {
 
-bool says(const Equilibrium& equilibrium, const std::string& words) {
+bool message_contains(const Equilibrium& equilibrium, const std::string& words) {
   return equilibrium.message.find(words) != std::string::npos;
 }
 
@@ -73,9 +73,9 @@ TEST(SecondVariation, CountsTheZeroModeOfARod) {
   Problem arch = heavy_cantilever(0, 0);
   arch.grips = {{0, Eigen::Vector3d::Zero(), std::nullopt}, {1, {0.8, 0, 0}, std::nullopt}};
   const Equilibrium result = test::converged(solve_exact(arch));
-  EXPECT_TRUE(says(result, "1 zero mode")) << result.message;
+  EXPECT_TRUE(message_contains(result, "1 zero mode")) << result.message;
   EXPECT_NEAR(result.smallest_eigenvalue, 0, 1e-7);
-  EXPECT_FALSE(says(solve_exact(heavy_cantilever(1, 0)), "for nothing"));
+  EXPECT_FALSE(message_contains(solve_exact(heavy_cantilever(1, 0)), "for nothing"));
 }
 
 TEST(Exact, PutsStableEquilibriaFirst) {
@@ -88,7 +88,7 @@ TEST(Exact, PutsStableEquilibriaFirst) {
   EXPECT_EQ(above[0].status, SolveStatus::converged);
   EXPECT_EQ(above[1].status, SolveStatus::converged);
   EXPECT_EQ(above[2].status, SolveStatus::saddle);
-  EXPECT_TRUE(says(above[0], "1 zero mode")) << above[0].message;
+  EXPECT_TRUE(message_contains(above[0], "1 zero mode")) << above[0].message;
   EXPECT_LT(above[2].smallest_eigenvalue, 0);
 }
 
@@ -125,7 +125,8 @@ TEST(Exact, ReportsOmittedCombinationsAndKeepsTheLowest) {
   }
   const std::vector<Equilibrium> all = all_exact(problem);
   ASSERT_EQ(all.size(), 64U);
-  EXPECT_TRUE(says(all.front(), "only the lowest 64 combinations")) << all.front().message;
+  EXPECT_TRUE(message_contains(all.front(), "only the lowest 64 combinations"))
+      << all.front().message;
   for (std::size_t i = 0; i + 1 < all.size(); ++i) {
     if (succeeded(all[i].status) != succeeded(all[i + 1].status)) continue;
     EXPECT_LE(all[i].energy.total(), all[i + 1].energy.total() + 1e-9) << i;
@@ -140,7 +141,7 @@ TEST(Exact, EndsWhenItsTimeIsOver) {
   }
   const Equilibrium result = solve_exact(pins, {.time_limit = 1e-3});
   EXPECT_EQ(result.status, SolveStatus::time_limit);
-  EXPECT_TRUE(says(result, "time limit")) << result.message;
+  EXPECT_TRUE(message_contains(result, "time limit")) << result.message;
   EXPECT_EQ(solve_exact(heavy_cantilever(10, 0), {.time_limit = 1e-9}).status,
             SolveStatus::time_limit);
   EXPECT_THROW((void)solve_exact(pins, {.time_limit = 0}), std::invalid_argument);
@@ -158,9 +159,11 @@ TEST(Exact, ListsWhatItHasFoundWhenItsTimeIsOver) {
     for (const Equilibrium& found : all_exact(arch, {.time_limit = limit})) {
       if (found.status != SolveStatus::time_limit) continue;
       ++cut_short;
-      EXPECT_TRUE(says(found, "other equilibria may have less energy")) << found.message;
-      EXPECT_TRUE(says(found, "converged") || says(found, "saddle")) << found.message;
-      EXPECT_EQ(says(found, "saddle"), found.smallest_eigenvalue < 0) << found.message;
+      EXPECT_TRUE(message_contains(found, "other equilibria may have less energy"))
+          << found.message;
+      EXPECT_TRUE(message_contains(found, "converged") || message_contains(found, "saddle"))
+          << found.message;
+      EXPECT_EQ(message_contains(found, "saddle"), found.smallest_eigenvalue < 0) << found.message;
       EXPECT_LT(test::balance_of(arch, found, 0.02).worst(), 1e-9);
     }
   }

@@ -149,7 +149,7 @@ struct FramedCurve {
 };
 
 /// Returns a mode of the second variation at s, by polynomials through the nodes of each element.
-Eigen::Vector3d on_elements(const SecondVariation& mode, double s) {
+Eigen::Vector3d evaluate_mode(const SecondVariation& mode, double s) {
   constexpr Eigen::Index order = 4;
   Eigen::Index first = 0;
   while (first + 2 * order < mode.s.size() && mode.s[first + order] < s) first += order;
@@ -187,12 +187,14 @@ TEST(TwistedSecondVariation, IsTheSecondDifferenceOfTheEnergy) {
                            return state;
                          }));
     const auto cost = [&](double amount) {
-      return curve.cost([&](double s) { return Eigen::Vector3d(amount * on_elements(found, s)); });
+      return curve.cost(
+          [&](double s) { return Eigen::Vector3d(amount * evaluate_mode(found, s)); });
     };
     double norm = 0;
     for (int i = 0; i < FramedCurve::parts; ++i) {
-      const Eigen::Vector3d here = on_elements(found, static_cast<double>(i) / FramedCurve::parts);
-      const Eigen::Vector3d next = on_elements(found, (i + 1.0) / FramedCurve::parts);
+      const Eigen::Vector3d here =
+          evaluate_mode(found, static_cast<double>(i) / FramedCurve::parts);
+      const Eigen::Vector3d next = evaluate_mode(found, (i + 1.0) / FramedCurve::parts);
       norm += (next - here).squaredNorm() * FramedCurve::parts +
               (here.squaredNorm() + next.squaredNorm()) / (2 * FramedCurve::parts);
     }
@@ -226,28 +228,28 @@ TEST(ExactTwist, ConfirmsTheLocalisedBuckleOfALongRod) {
 }
 
 /// Returns the director that is carried along a shape without twist.
-Eigen::Vector3d carried_director(const Equilibrium& shape, Eigen::Vector3d d) {
+Eigen::Vector3d transported_director(const Equilibrium& shape, Eigen::Vector3d d) {
   const Samples samples = shape.sample(equal_arc_lengths(1, 2001));
   for (Eigen::Index i = 0; i + 1 < samples.points.cols(); ++i) d = test::carried(samples, i, d);
   return d;
 }
 
 /// Clamps that do not fit each other, and weight.
-Problem askew(double roll) {
+Problem rod_with_misaligned_clamps(double roll) {
   Problem problem = rolled_clamps({0.6, 0.2, 0.1}, {0.8, 0.3, -0.5}, 0.7, roll);
   problem.weight_per_length = {0, -5, 0};
   return problem;
 }
 
 TEST(ExactTwist, PutsTheFrameAtTheEndWhereTheRollSays) {
-  const Problem unrolled = askew(0);
+  const Problem unrolled = rod_with_misaligned_clamps(0);
   const Eigen::Vector3d start = held_d1(unrolled, unrolled.grips[0]);
   const Eigen::Vector3d d1 = held_d1(unrolled, unrolled.grips[1]);
   const Eigen::Vector3d t = Eigen::Vector3d(0.8, 0.3, -0.5).normalized();
   for (const double roll : {-2.0, 1.0, 6.0, 12.0}) {
-    const Equilibrium result = test::converged(solve_exact(askew(roll)));
+    const Equilibrium result = test::converged(solve_exact(rod_with_misaligned_clamps(roll)));
     const Eigen::Vector3d end =
-        turned(carried_director(result, start), t, result.twists.at(0).angle);
+        turned(transported_director(result, start), t, result.twists.at(0).angle);
     EXPECT_LT((end - turned(d1, t, roll)).norm(), 1e-9) << roll;
   }
 }
@@ -255,7 +257,7 @@ TEST(ExactTwist, PutsTheFrameAtTheEndWhereTheRollSays) {
 TEST(ExactTwist, OfSeveralPartsIsInBalance) {
   // A clamp in the middle holds a frame and a later one does not, so the last part of the rod is
   // not twisted.
-  Problem problem = askew(2);
+  Problem problem = rod_with_misaligned_clamps(2);
   problem.length = 2;
   problem.bending_stiffness = 3;
   problem.torsional_stiffness = 2;
@@ -272,7 +274,7 @@ TEST(ExactTwist, OfSeveralPartsIsInBalance) {
 
 TEST(ExactTwist, StartsFromAnEquilibriumWithoutContinuation) {
   for (const bool known : {false, true}) {
-    Problem problem = askew(5);
+    Problem problem = rod_with_misaligned_clamps(5);
     if (known) {
       problem.grips[0].frame->d1 = Eigen::Vector3d(0.3, 0, 1);
       problem.grips[1].frame->d1 = Eigen::Vector3d(0.1, -2, 1);
@@ -290,19 +292,19 @@ TEST(ExactTwist, RefusesWhatItCannotTwist) {
   const auto refusal = [](const Problem& problem) {
     return test::error_of<std::invalid_argument>([&] { return solve_exact(problem); });
   };
-  Problem soft = askew(1);
+  Problem soft = rod_with_misaligned_clamps(1);
   soft.torsional_stiffness = 0;
   EXPECT_NE(refusal(soft).find("torsional_stiffness"), std::string::npos) << refusal(soft);
-  Problem pin = askew(1);
+  Problem pin = rod_with_misaligned_clamps(1);
   pin.grips[1].direction.reset();
   EXPECT_NE(refusal(pin).find("grip with a frame but no direction"), std::string::npos);
-  Problem open = askew(1);
+  Problem open = rod_with_misaligned_clamps(1);
   open.grips.push_back({0.5, {0.3, 0, 0}, Eigen::Vector3d::UnitX()});
   EXPECT_NE(refusal(open).find("clamp without a frame between"), std::string::npos);
 }
 
 TEST(ExactTwist, ReportsTheRollThatItReached) {
-  const Equilibrium result = solve_exact(askew(1e7), {.time_limit = 1});
+  const Equilibrium result = solve_exact(rod_with_misaligned_clamps(1e7), {.time_limit = 1});
   EXPECT_EQ(result.status, SolveStatus::time_limit);
   EXPECT_NE(result.message.find("of 1000000"), std::string::npos) << result.message;
 }

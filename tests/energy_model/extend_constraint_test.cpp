@@ -62,11 +62,11 @@ void newton_step(const Slider& slider, const SpanEnergy& model, NewtonSystem& sy
 // [end of page]
 
 Slider slider_of(const SpanEnergy& model, const PlacedSpan& placed) {
-  std::vector<Piece> pieces;
-  for (Eigen::Index i = 0; i < model.pieces(); ++i) pieces.push_back(model.piece(i));
-  const PositionOperator reach(placed.span, pieces, model.table());
+  std::vector<Element> elements;
+  for (Eigen::Index i = 0; i < model.elements(); ++i) elements.push_back(model.element(i));
+  const PositionOperator reach(placed.span, elements, model.table());
   return {placed.frame * Eigen::Vector3d(0.6, 0.8, 0), Eigen::Vector3d(0.2, 0.1, 0),
-          reach.begin(model.pieces())};
+          reach.begin(model.elements())};
 }
 
 TEST(ExtendConstraint, DerivativesAreThoseOfTheResidual) {

@@ -37,7 +37,7 @@ TangentField helix_field(const Span& span, double turns) {
 }
 
 /// Downhill from there to a minimum, with as many terms as it takes, certified.
-SpanSolution from_helix(const Span& span, double turns) {
+SpanSolution minimum_near_helix(const Span& span, double turns) {
   SpanWorkspace workspace;
   SpanOptions options;
   options.start.field = helix_field(span, turns);
@@ -53,7 +53,7 @@ TEST(ExtendStart, AHelixLeadsToNothingLowerThanTheSearch) {
   ASSERT_FALSE(span.planar);
   const Equilibrium lowest = test::converged(solve_energy(problem));
   for (const double turns : {1.0, -1.0}) {
-    const SpanSolution found = test::converged(from_helix(span, turns));
+    const SpanSolution found = test::converged(minimum_near_helix(span, turns));
     EXPECT_GT(found.energy, lowest.energy.total() - 1e-9);
   }
 }

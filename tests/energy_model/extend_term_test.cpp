@@ -61,10 +61,10 @@ struct TetheredRod {
 
   explicit TetheredRod(const Problem& problem)
       : placed(split(problem).front()), model(placed.span, 24) {
-    std::vector<Piece> pieces;
-    for (Eigen::Index i = 0; i < model.pieces(); ++i) pieces.push_back(model.piece(i));
-    const PositionOperator reach(placed.span, pieces, model.table());
-    tether = {3, placed.frame * Eigen::Vector3d(0.9, 0.4, 0), reach.begin(model.pieces())};
+    std::vector<Element> elements;
+    for (Eigen::Index i = 0; i < model.elements(); ++i) elements.push_back(model.element(i));
+    const PositionOperator reach(placed.span, elements, model.table());
+    tether = {3, placed.frame * Eigen::Vector3d(0.9, 0.4, 0), reach.begin(model.elements())};
   }
 
   double evaluate(const Eigen::VectorXd& x, Eigen::VectorXd& slope) {

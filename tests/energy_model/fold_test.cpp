@@ -31,7 +31,7 @@ Problem ribbon(Real gamma) {
 using State = Eigen::Matrix<Real, 6, 1>;  // theta, theta', their derivatives, x, y
 
 /// Integrates by the Runge-Kutta method, at equally spaced s from the tip to the clamp.
-std::vector<State> shot(Real gamma, Real tip_angle, int steps) {
+std::vector<State> integrate_from_tip(Real gamma, Real tip_angle, int steps) {
   const Real h = Real(1) / static_cast<Real>(steps);
   const auto rates = [gamma](Real s, const State& u) {
     return State(u[1], gamma * s * std::cos(u[0]), u[3], -gamma * s * std::sin(u[0]) * u[2],
@@ -47,9 +47,9 @@ std::vector<State> shot(Real gamma, Real tip_angle, int steps) {
 /// Returns the state at the clamp, extrapolated twice: accurate to 1e-15.
 State at_clamp(Real gamma, Real tip_angle) {
   constexpr int steps = 200;
-  const State a = shot(gamma, tip_angle, steps).back();
-  const State b = shot(gamma, tip_angle, 2 * steps).back();
-  const State c = shot(gamma, tip_angle, 4 * steps).back();
+  const State a = integrate_from_tip(gamma, tip_angle, steps).back();
+  const State b = integrate_from_tip(gamma, tip_angle, 2 * steps).back();
+  const State c = integrate_from_tip(gamma, tip_angle, 4 * steps).back();
   const State coarse = b + (b - a) / Real(15);
   const State fine = c + (c - b) / Real(15);
   return fine + (fine - coarse) / Real(31);
@@ -61,7 +61,7 @@ struct Fold {
 
 /// Returns the fold at which the angle at the clamp and its derivative by that at the tip are zero,
 /// by Newton's method.
-Fold thrown_back_fold() {
+Fold fold_of_clamp_angle() {
   Fold fold = {41.4L, 4.0L};
   for (int i = 0; i < 8; ++i) {
     constexpr Real step = 1e-6L;
@@ -82,7 +82,7 @@ Fold thrown_back_fold() {
 /// Returns the shape that is shot from this tip angle, as an initial guess.
 Equilibrium shape_of(Real gamma, Real tip_angle) {
   constexpr int steps = 2000;
-  const std::vector<State> states = shot(gamma, tip_angle, steps);
+  const std::vector<State> states = integrate_from_tip(gamma, tip_angle, steps);
   Equilibrium shape;
   shape.sample = [states](std::span<const double> arc_lengths) {
     Samples samples;
@@ -107,7 +107,7 @@ Eigen::Vector2d tip_of(const Equilibrium& equilibrium) {
 }
 
 TEST(Fold, WhatIsCalledConvergedIsAsNearAsItsErrorSays) {
-  const Fold fold = thrown_back_fold();
+  const Fold fold = fold_of_clamp_angle();
   ASSERT_NEAR(static_cast<double>(fold.gamma), 41.4, 0.01);
   const Equilibrium start = shape_of(fold.gamma, fold.tip_angle + 0.05L);
   int open = 0;
@@ -151,14 +151,14 @@ TEST(Fold, WhatIsCalledConvergedIsAsNearAsItsErrorSays) {
 }
 
 TEST(Fold, BelowItNothingOfTheBranchIsCalledConverged) {
-  const Fold fold = thrown_back_fold();
+  const Fold fold = fold_of_clamp_angle();
   const Equilibrium start = shape_of(fold.gamma, fold.tip_angle);
   for (int exponent = 4; exponent <= 15; ++exponent) {
     const Real gamma = fold.gamma * (1 - std::pow(10.0L, -exponent));
     const Equilibrium found = solve_energy(ribbon(gamma), {.start = &start});
     // Beyond the fold the shape that hangs on the other side is the only equilibrium.
-    const bool thrown_back = tip_of(found).x() < 0;
-    EXPECT_FALSE(thrown_back && succeeded(found.status)) << exponent << ": " << found.message;
+    const bool is_reversed = tip_of(found).x() < 0;
+    EXPECT_FALSE(is_reversed && succeeded(found.status)) << exponent << ": " << found.message;
   }
 }
 

@@ -37,7 +37,7 @@ TEST(WarmStart, FollowsAMovingGripperWithOneSolver) {
   EXPECT_LT((test::point_at(followed, 1) - test::point_at(cold, 1)).norm(), 1e-10);
 }
 
-double apart(const Equilibrium& a, const Equilibrium& b) {
+double distance_between(const Equilibrium& a, const Equilibrium& b) {
   const std::vector<double> s = equal_arc_lengths(1, 11);
   return (a.sample(s).points - b.sample(s).points).norm();
 }
@@ -52,7 +52,7 @@ TEST(Keep, AgreesWithFollowOnTheSameBranch) {
     const std::optional<Equilibrium> kept = keeps.try_follow(heavy_cantilever(10, degrees));
     ASSERT_TRUE(kept);
     EXPECT_EQ(kept->status, SolveStatus::converged);
-    EXPECT_LT(apart(*kept, follows.follow(heavy_cantilever(10, degrees))), 1e-12);
+    EXPECT_LT(distance_between(*kept, follows.follow(heavy_cantilever(10, degrees))), 1e-12);
   }
 }
 
@@ -69,10 +69,10 @@ TEST(Keep, StaysWhereItWasWhenTheBranchHasEnded) {
     const std::optional<Equilibrium> again = solver.try_follow(heavy_cantilever(10, 85));
     ASSERT_TRUE(again);
     EXPECT_LE(again->evaluations, 3);
-    EXPECT_LT(apart(*again, *last), 1e-9);
+    EXPECT_LT(distance_between(*again, *last), 1e-9);
   }
-  const Equilibrium fallen = test::usable(solver.follow(heavy_cantilever(10, 100)));
-  EXPECT_GT(apart(fallen, *last), 0.1);
+  const Equilibrium fallen = test::require_usable(solver.follow(heavy_cantilever(10, 100)));
+  EXPECT_GT(distance_between(fallen, *last), 0.1);
 }
 
 TEST(Keep, UndoRestoresTheShapeBefore) {
@@ -81,16 +81,16 @@ TEST(Keep, UndoRestoresTheShapeBefore) {
   const std::optional<Equilibrium> near = solver.try_follow(heavy_cantilever(10, 85));
   ASSERT_TRUE(near);
   const Equilibrium fallen = solver.follow(heavy_cantilever(10, 100));
-  ASSERT_GT(apart(fallen, *near), 0.1);
+  ASSERT_GT(distance_between(fallen, *near), 0.1);
   solver.undo();
   const std::optional<Equilibrium> again = solver.try_follow(heavy_cantilever(10, 85));
   ASSERT_TRUE(again);
-  EXPECT_LT(apart(*again, *near), 1e-9);
+  EXPECT_LT(distance_between(*again, *near), 1e-9);
 }
 
 /// The least clearance of the peg within a thousandth of the length of where the rod touches it.
-double clearance_beside(const Equilibrium& rod, const ContactPart& contact,
-                        const obstacle::Body& peg) {
+double least_clearance_near(const Equilibrium& rod, const ContactPart& contact,
+                            const obstacle::Body& peg) {
   std::vector<double> s;
   for (int i = -500; i <= 500; ++i) {
     s.push_back((contact.begin + contact.end) / 2 + 2e-6 * i);
@@ -108,11 +108,11 @@ TEST(Keep, FollowsAPointUntilItLiesAndBack) {
   const Equilibrium start = test::start_over_peg(radius);
   EnergySolver solver({.start = &start});
   const Equilibrium first =
-      test::converged(solver.solve(test::drawn_over_peg(radius, 0.6 * about)));
+      test::converged(solver.solve(test::rod_pulled_over_peg(radius, 0.6 * about)));
   ASSERT_EQ(first.contacts.size(), 1U);
   ASSERT_EQ(first.contacts[0].kind, ContactKind::touching);
   const auto kind_at = [&](double tension) {
-    const Problem problem = test::drawn_over_peg(radius, tension);
+    const Problem problem = test::rod_pulled_over_peg(radius, tension);
     const std::optional<Equilibrium> rod = solver.try_follow(problem);
     EXPECT_TRUE(rod) << tension;
     if (!rod) return ContactKind::tip;
@@ -120,7 +120,8 @@ TEST(Keep, FollowsAPointUntilItLiesAndBack) {
     EXPECT_EQ(rod->contacts.size(), 1U);
     // Allowed depth behind an obstacle, checked near the point of contact more closely than a grid
     // of 1000 points does.
-    EXPECT_GT(clearance_beside(*rod, rod->contacts.at(0), problem.obstacles[0].body), -1.001e-9);
+    EXPECT_GT(least_clearance_near(*rod, rod->contacts.at(0), problem.obstacles[0].body),
+              -1.001e-9);
     return rod->contacts.at(0).kind;
   };
   double touches = 0.9 * about;
@@ -134,7 +135,8 @@ TEST(Keep, FollowsAPointUntilItLiesAndBack) {
   }
   // Both sides leave the peg at the same point there: at an angle phi each from the line of their
   // tension, sin(phi / 2) = (EI / T)^(1/2) / 2R.
-  const std::optional<Equilibrium> there = solver.try_follow(test::drawn_over_peg(radius, touches));
+  const std::optional<Equilibrium> there =
+      solver.try_follow(test::rod_pulled_over_peg(radius, touches));
   ASSERT_TRUE(there);
   const Eigen::Vector3d held = there->grips[0].force.normalized();
   const double phi = std::acos(held.y()) / 2;

@@ -63,8 +63,8 @@ TEST(Grips, TurnWithTheSceneInSpace) {
       const Eigen::Quaterniond turn(normal(engine), normal(engine), normal(engine), normal(engine));
       const test::Placement other{.turn = turn.normalized().toRotationMatrix()};
       const Equilibrium result = test::converged(solve_energy(other.of(problem)));
-      EXPECT_LT(other.between(original, result).points, 1e-9);
-      EXPECT_LT(other.between(original, result).force, 1e-7);
+      EXPECT_LT(other.differences(original, result).points, 1e-9);
+      EXPECT_LT(other.differences(original, result).force, 1e-7);
     }
   }
 }
@@ -85,12 +85,12 @@ TEST(Grips, OnePinCarriesAllThatHangsOnARodInSpace) {
         problem.weight_per_length + problem.loads[0].force + problem.loads[1].force;
     EXPECT_LT((result.grips[0].force + hanging).norm(), 1e-12);
     const Equilibrium exact = test::converged(solve_exact(problem));
-    EXPECT_LT(test::gap_between(result, exact), 1e-9);
+    EXPECT_LT(test::largest_point_distance(result, exact), 1e-9);
   }
 }
 
 TEST(Grips, FurtherApartThanTheRodAreRefusedWithTheNumbers) {
-  EXPECT_TRUE(test::says(
+  EXPECT_TRUE(test::has_all(
       test::error_of<std::invalid_argument>([] { return solve_energy(two_clamps(1, 1.2)); }),
       {"1.2 m apart"}));
   Problem same_place = two_clamps(1, 0.5);
@@ -219,7 +219,7 @@ TEST(Grips, ScaleWithTheRodAtEqualGamma) {
   for (int draw = 0; draw < 10; ++draw) {
     const double l = std::pow(10, decades(random));
     const test::Placement other{.length = l, .stiffness = std::pow(10, decades(random))};
-    const auto found = other.between(unit, test::converged(solve_energy(other.of(problem))));
+    const auto found = other.differences(unit, test::converged(solve_energy(other.of(problem))));
     EXPECT_LT(found.points, 1e-10);
     EXPECT_LT(found.energy, 1e-9);
     EXPECT_LT(found.force, 1e-7);
@@ -232,7 +232,7 @@ TEST(HighLoad, LowestStateIsRightAtEveryAngle) {
       const Equilibrium energy = solve_energy(heavy_cantilever(gamma, degrees));
       const Equilibrium exact = solve_exact(heavy_cantilever(gamma, degrees));
       ASSERT_EQ(energy.status, SolveStatus::converged) << gamma << ", " << degrees;
-      EXPECT_LT(test::gap_between(energy, exact), 1e-7) << gamma << ", " << degrees;
+      EXPECT_LT(test::largest_point_distance(energy, exact), 1e-7) << gamma << ", " << degrees;
     }
   }
 }

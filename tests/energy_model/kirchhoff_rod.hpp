@@ -13,7 +13,7 @@
 namespace dlo::test {
 
 /// Returns the matrix with hat(u) v = u x v.
-inline Eigen::Matrix3d hat_of(const Eigen::Vector3d& u) {
+inline Eigen::Matrix3d cross_product_matrix(const Eigen::Vector3d& u) {
   Eigen::Matrix3d hat;
   hat << 0, -u.z(), u.y(), u.z(), 0, -u.x(), -u.y(), u.x(), 0;
   return hat;
@@ -30,8 +30,9 @@ struct RodEnd {
 /// Integrates Kirchhoff's equations r' = t, R' = R hat(u), m' = n x t, n' = -w along a rod by the
 /// classical Runge-Kutta method, with the reactions of its grips and the loads.
 /// @param frame  directors (d1, d2, t) at the first grip, at s = 0
-inline RodEnd carried_along(const energy_model::Problem& problem,
-                            const energy_model::Equilibrium& shape, const Eigen::Matrix3d& frame) {
+inline RodEnd integrate_kirchhoff(const energy_model::Problem& problem,
+                                  const energy_model::Equilibrium& shape,
+                                  const Eigen::Matrix3d& frame) {
   using State = Eigen::Matrix<double, 15, 1>;  // r, R, m
   const std::vector<double> events = events_of(problem);
   State y;
@@ -54,13 +55,14 @@ inline RodEnd carried_along(const energy_model::Problem& problem,
                                     section.torsional_stiffness);
     const auto rates = [&](double s, const State& at) {
       const Eigen::Matrix3d R = Eigen::Map<const Eigen::Matrix3d>(at.data() + 3);
-      Eigen::Vector3d u = natural_at(problem, s);
+      Eigen::Vector3d u = natural_strain_at(problem, s);
       if (section.natural_curvature) u.head<2>() = *section.natural_curvature;
       if (section.natural_twist) u.z() = *section.natural_twist;
       u += (R.transpose() * at.tail<3>()).cwiseQuotient(stiffness);
       const Eigen::Vector3d own = n - (s - events[e]) * section.weight_per_length;
       State rate;
-      rate << R.col(2), (R * hat_of(u)).reshaped(), own.cross(Eigen::Vector3d(R.col(2)));
+      rate << R.col(2), (R * cross_product_matrix(u)).reshaped(),
+          own.cross(Eigen::Vector3d(R.col(2)));
       return rate;
     };
     constexpr int steps = 1600;

@@ -46,7 +46,7 @@ TEST(LineLoad, OnAllOfTheRodIsAWeight) {
     for (const auto solve : test::solvers) {
       const Equilibrium one = solve(heavy);
       const Equilibrium other = test::converged(solve(loaded));
-      EXPECT_EQ(test::gap_between(one, other), 0);
+      EXPECT_EQ(test::largest_point_distance(one, other), 0);
       EXPECT_NEAR(other.energy.load, one.energy.gravity + one.energy.load, 1e-11 * 20);
       EXPECT_NEAR(other.energy.total(), one.energy.total(), 1e-12 * 20);
       EXPECT_EQ(one.grips[0].torque, other.grips[0].torque);
@@ -89,7 +89,7 @@ void expect_confirmed(const Problem& problem, int& confirmed) {
   const Equilibrium exact = solve_exact(problem, {.start = &energy});
   if (!succeeded(exact.status)) return;
   ++confirmed;
-  EXPECT_LT(test::gap_between(energy, exact), 1e-8);
+  EXPECT_LT(test::largest_point_distance(energy, exact), 1e-8);
   EXPECT_NEAR(energy.energy.load, exact.energy.load, 1e-7 * force);
   EXPECT_NEAR(energy.energy.gravity, exact.energy.gravity, 1e-7 * force);
   for (std::size_t i = 0; i < energy.grips.size(); ++i) {

@@ -50,9 +50,9 @@ TEST(Minimise, CallsNothingASuccessThatNLoptDoesNot) {
   EXPECT_NE(translate_nlopt(99).message.find("99"), std::string::npos);
   // After a failed line search the result may only be used as an initial guess for a method that
   // proves its result.
-  EXPECT_TRUE(translate_nlopt(NLOPT_FAILURE).is_a_start());
-  EXPECT_FALSE(translate_nlopt(NLOPT_OUT_OF_MEMORY).is_a_start());
-  EXPECT_FALSE(translate_nlopt(99).is_a_start());
+  EXPECT_TRUE(translate_nlopt(NLOPT_FAILURE).is_usable_start());
+  EXPECT_FALSE(translate_nlopt(NLOPT_OUT_OF_MEMORY).is_usable_start());
+  EXPECT_FALSE(translate_nlopt(99).is_usable_start());
 }
 
 }  // namespace

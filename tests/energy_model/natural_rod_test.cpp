@@ -42,7 +42,7 @@ Matrix3d along_x() {
 /// @param tolerance  of the remaining moment and force at the end, divided by EI/l and EI/l^2
 void expect_kirchhoff(const Problem& problem, const Equilibrium& solution, const Matrix3d& frame,
                       double tolerance) {
-  const test::RodEnd end = test::carried_along(problem, solution, frame);
+  const test::RodEnd end = test::integrate_kirchhoff(problem, solution, frame);
   EXPECT_LT((end.point - point_at(solution, problem.length)).norm(), tolerance);
   EXPECT_LT(end.force.norm(), 100 * tolerance);
   EXPECT_LT(end.moment.norm(), 100 * tolerance);

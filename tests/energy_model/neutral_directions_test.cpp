@@ -27,7 +27,7 @@ Problem strip(Problem problem, double about_d1, double about_d2, double torsion)
   return problem;
 }
 
-void expect_open(const Equilibrium& found, int directions) {
+void expect_singular(const Equilibrium& found, int directions) {
   EXPECT_EQ(found.status, SolveStatus::near_singular) << found.message;
   EXPECT_EQ(found.neutral_directions, directions) << found.smallest_eigenvalue;
   EXPECT_NE(found.message.find(std::to_string(directions) + " neutral direction"),
@@ -35,7 +35,7 @@ void expect_open(const Equilibrium& found, int directions) {
       << found.message;
 }
 
-void expect_determined(const Equilibrium& found) {
+void expect_regular(const Equilibrium& found) {
   EXPECT_EQ(found.status, SolveStatus::converged) << found.message;
   EXPECT_EQ(found.neutral_directions, 0);
 }
@@ -49,16 +49,16 @@ TEST(NeutralDirections, AnUprightRoundRodHasTwoNextToBuckling) {
       return solve_energy(problem);
     };
     SCOPED_TRACE(plain);
-    for (const double below : {1e-8, 1e-9}) expect_open(solved(below), 2);
-    for (const double below : {1e-3, 1e-6}) expect_determined(solved(below));
+    for (const double below : {1e-8, 1e-9}) expect_singular(solved(below), 2);
+    for (const double below : {1e-3, 1e-6}) expect_regular(solved(below));
   }
 }
 
 TEST(NeutralDirections, AStripHasOneWhicheverWayItIsWeak) {
   // The direction of the smaller stiffness is in the plane of the solver, or perpendicular to it.
-  expect_open(solve_energy(strip(upright(1e-9), 4, 1, 1)), 1);
-  expect_open(solve_energy(strip(upright(1e-9), 1, 4, 1)), 1);
-  expect_determined(solve_energy(strip(upright(1e-6), 1, 4, 1)));
+  expect_singular(solve_energy(strip(upright(1e-9), 4, 1, 1)), 1);
+  expect_singular(solve_energy(strip(upright(1e-9), 1, 4, 1)), 1);
+  expect_regular(solve_energy(strip(upright(1e-6), 1, 4, 1)));
 }
 
 TEST(NeutralDirections, EulersColumnHasTwoAtItsLoadAndIsNoBetterDeterminedThere) {
@@ -70,8 +70,8 @@ TEST(NeutralDirections, EulersColumnHasTwoAtItsLoadAndIsNoBetterDeterminedThere)
     problem.loads = {{1, {-pi * pi / 4 * (1 - below), 0, 0}}};
     return solve_energy(problem);
   };
-  for (const double below : {0.0, 1e-12, 5e-8}) expect_open(column(below), 2);
-  expect_determined(column(2e-7));
+  for (const double below : {0.0, 1e-12, 5e-8}) expect_singular(column(below), 2);
+  expect_regular(column(2e-7));
 }
 
 TEST(NeutralDirections, AnArchThatSnapsHasOneAtItsFold) {
@@ -101,7 +101,7 @@ TEST(NeutralDirections, AnArchThatSnapsHasOneAtItsFold) {
     (holds ? low : high) = force;
     if (holds) on_branch = std::move(next);
   }
-  expect_open(on_branch, 1);
+  expect_singular(on_branch, 1);
   EXPECT_NEAR(on_branch.smallest_eigenvalue, 0, 1e-6);
 }
 
@@ -123,7 +123,7 @@ TEST(NeutralDirections, RigidBodyModesAreNotCounted) {
         problem.grips[1].frame = FrameHold{.roll = 1};
       }
       const Equilibrium found = solve_energy(problem);
-      expect_determined(found);
+      expect_regular(found);
       EXPECT_NEAR(found.smallest_eigenvalue, 0, 1e-9);
       EXPECT_LT(found.error_estimate, 1e-6);
     }
@@ -133,7 +133,7 @@ TEST(NeutralDirections, RigidBodyModesAreNotCounted) {
   across.grips = {{0, {0, 0, 0}}, {1, {0.7, 0, 0}}};
   EXPECT_GT(solve_energy(across).smallest_eigenvalue, 1e-3);
   // Rotation of a straight rod about its own line does not change its shape and is no zero mode.
-  expect_determined(solve_energy(heavy_cantilever(3, -90)));
+  expect_regular(solve_energy(heavy_cantilever(3, -90)));
 }
 
 // For an infinite rod, cos(theta) = M / (2 (B T)^(1/2)) gives the homoclinic helix a slack D = 4

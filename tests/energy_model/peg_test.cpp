@@ -31,7 +31,7 @@ TEST(Peg, TautRodLeavesItWhereItsCurvatureIsThePegs) {
   for (const double radius : {0.03, 0.05, 0.1}) {
     for (const double tension : {3e3, 1e4}) {
       SCOPED_TRACE("radius " + std::to_string(radius) + ", tension " + std::to_string(tension));
-      const Problem problem = test::drawn_over_peg(radius, tension);
+      const Problem problem = test::rod_pulled_over_peg(radius, tension);
       // On this side of the peg it would hang from the clamp alone.
       const Equilibrium start = test::start_over_peg(radius);
       const Equilibrium rod = test::converged(solve_energy(problem, {.start = &start}));
@@ -101,7 +101,8 @@ TEST(Peg, RopeHasTheTensionOfTheFrictionlessCapstan) {
   Problem problem = heavy_cantilever(gamma, 0);
   problem.grips = {{0, {-0.33, -0.28, 0}}, {1, {0.38, -0.29, 0}}};
   problem.obstacles = {{Body::cylinder({0, 0, 0}, {0, 0, 1}, 0.05)}};
-  const Equilibrium start = test::start_along({{-0.33, -0.28, 0}, {0, 0.06, 0}, {0.38, -0.29, 0}});
+  const Equilibrium start =
+      test::start_along_polyline({{-0.33, -0.28, 0}, {0, 0.06, 0}, {0.38, -0.29, 0}});
   const Equilibrium rod = test::converged(solve_energy(problem, {.start = &start}));
   test::expect_only_pushed(problem, rod);
   ASSERT_EQ(rod.contacts.size(), 1);

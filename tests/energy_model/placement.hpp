@@ -57,8 +57,8 @@ struct Placement {
 
   /// @param own  result of a rod of unit length
   /// @param placed  result of the same rod, transformed by of()
-  [[nodiscard]] Differences between(const energy_model::Equilibrium& own,
-                                    const energy_model::Equilibrium& placed) const {
+  [[nodiscard]] Differences differences(const energy_model::Equilibrium& own,
+                                        const energy_model::Equilibrium& placed) const {
     std::vector<double> s = energy_model::equal_arc_lengths(1, 11);
     const energy_model::Samples a = own.sample(s);
     for (double& at : s) at *= length;

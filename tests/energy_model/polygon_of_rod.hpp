@@ -46,8 +46,8 @@ struct PolygonOfRod {
     hold(count - 2, rod.grips.back(), -1);
     hold(count - 1, rod.grips.back(), 1);
     for (const energy_model::Obstacle& obstacle : rod.obstacles) {
-      const int looks = obstacle::samples_per_segment(obstacle.body, L);
-      problem.obstacles.push_back({obstacle.body, stiff * L / rod.length * 64, looks});
+      const int samples = obstacle::samples_per_segment(obstacle.body, L);
+      problem.obstacles.push_back({obstacle.body, stiff * L / rod.length * 64, samples});
     }
     const Eigen::Matrix3Xd d1 = shape.sample(std::array{0.0, rod.length}).d1;
     problem.twists = {{0, count - 2, d1.col(0), d1.col(1), rod.length / rod.torsional_stiffness,

@@ -115,7 +115,7 @@ TEST(Polygon, IsTheRigidChainWhenItHasOneClamp) {
       chain.node_forces.row(1).tail(n).setConstant(-gamma * L);
       chain.law = law;
       chain.stiffness = law == JointLaw::paper ? 20 : 1;
-      const ChainResult rigid = test::usable(solve_chain(chain));
+      const ChainResult rigid = test::require_usable(solve_chain(chain));
       PolygonProblem problem;
       problem.rest_lengths = chain.segment_lengths;
       problem.stretch_stiffness = stiff * (1 + gamma);
@@ -126,7 +126,7 @@ TEST(Polygon, IsTheRigidChainWhenItHasOneClamp) {
       problem.held = {{0, {0, 0, 0}}, {1, {L, 0, 0}}};
       Eigen::Matrix3Xd start = Eigen::Matrix3Xd::Zero(3, n + 1);
       for (Eigen::Index i = 0; i < n; ++i) start(0, i + 1) = start(0, i) + problem.rest_lengths[i];
-      const PolygonResult result = test::usable(solve_polygon(problem, start));
+      const PolygonResult result = test::require_usable(solve_polygon(problem, start));
       // The strain is at most w l / c_c = 1 / stiff.
       EXPECT_LT((result.points.topRows(2) - rigid.points).colwise().norm().maxCoeff(), 2 / stiff)
           << gamma;
@@ -142,7 +142,7 @@ TEST(Polygon, LeavesASaddle) {
   for (Eigen::Index i = 0; i < 42; ++i) {
     start.col(i) = Eigen::Vector3d(0.95 * static_cast<double>(i) / 41, 0, 0);
   }
-  const PolygonResult buckled = test::usable(solve_polygon(problem, start));
+  const PolygonResult buckled = test::require_usable(solve_polygon(problem, start));
   // A column clamped at both ends carries 4 pi^2, and more as it bends: about P (1 + e/2), e its
   // relative shortening. The polygon is softer by O(L^2).
   const double thrust = buckled.grip_forces.leftCols<2>().rowwise().sum().x();
@@ -183,11 +183,12 @@ TEST_P(PolygonOfEveryLaw, StiffeningSecondDerivativesAreNeverNegative) {
     Eigen::Matrix3Xd points = arch(problem, 0.8, 0.3);
     for (double& x : points.reshaped()) x += uniform(engine);
     const Eigen::MatrixXd all = hessian_of(problem, points, HessianTerms::all);
-    const Eigen::MatrixXd stiffening = hessian_of(problem, points, HessianTerms::stiffening);
-    const double largest = stiffening.cwiseAbs().maxCoeff();
+    const Eigen::MatrixXd positive_terms =
+        hessian_of(problem, points, HessianTerms::positive_terms);
+    const double largest = positive_terms.cwiseAbs().maxCoeff();
     EXPECT_LT(smallest_eigenvalue(all), 0);
-    EXPECT_GT(smallest_eigenvalue(stiffening), -1e-13 * largest);
-    EXPECT_LT((stiffening - stiffening.transpose()).cwiseAbs().maxCoeff(), 1e-13 * largest);
+    EXPECT_GT(smallest_eigenvalue(positive_terms), -1e-13 * largest);
+    EXPECT_LT((positive_terms - positive_terms.transpose()).cwiseAbs().maxCoeff(), 1e-13 * largest);
   }
   Eigen::Matrix3Xd straight = Eigen::Matrix3Xd::Zero(3, 12);
   straight.row(0).setLinSpaced(12, 0, 1.5);
@@ -195,8 +196,9 @@ TEST_P(PolygonOfEveryLaw, StiffeningSecondDerivativesAreNeverNegative) {
   problem.obstacles.resize(1);
   problem.obstacles[0].body = obstacle::Body::half_space({0, -9, 0}, Eigen::Vector3d::UnitY());
   const Eigen::MatrixXd all = hessian_of(problem, straight, HessianTerms::all);
-  const Eigen::MatrixXd stiffening = hessian_of(problem, straight, HessianTerms::stiffening);
-  EXPECT_LT((all - stiffening).cwiseAbs().maxCoeff(), 1e-12 * all.cwiseAbs().maxCoeff());
+  const Eigen::MatrixXd positive_terms =
+      hessian_of(problem, straight, HessianTerms::positive_terms);
+  EXPECT_LT((all - positive_terms).cwiseAbs().maxCoeff(), 1e-12 * all.cwiseAbs().maxCoeff());
 }
 
 // A rope that is compressed to half of its length above a floor: with damping as the only remedy
@@ -206,17 +208,18 @@ TEST(Polygon, ASoftRopeThatIsCompressedComesToRestInTensOfSteps) {
   problem.obstacles = {{obstacle::Body::half_space({0, -0.1, 0}, Eigen::Vector3d::UnitY()), stiff}};
   Eigen::Matrix3Xd start = arch(problem, 0.5, 0.3);
   start.bottomRows(2) *= 0.05;
-  const PolygonResult rope = test::usable(solve_polygon(problem, start, {.project_hessian = true}));
+  const PolygonResult rope =
+      test::require_usable(solve_polygon(problem, start, {.project_hessian = true}));
   EXPECT_LT(rope.evaluations, 150);
 }
 
 TEST(Polygon, ObstaclePushesBackWithItsStiffness) {
   PolygonProblem problem = between_clamps(JointLaw::hooke, 33, 0.9, 20);
-  const PolygonResult free = test::usable(solve_polygon(problem, arch(problem, 0.9, 0)));
+  const PolygonResult free = test::require_usable(solve_polygon(problem, arch(problem, 0.9, 0)));
   const double sag = free.points.row(1).minCoeff();
   problem.obstacles = {
       {obstacle::Body::half_space({0, sag / 2, 0}, Eigen::Vector3d::UnitY()), 1e5}};
-  const PolygonResult held = test::usable(solve_polygon(problem, arch(problem, 0.9, 0)));
+  const PolygonResult held = test::require_usable(solve_polygon(problem, arch(problem, 0.9, 0)));
   const Eigen::ArrayXd depth = (sag / 2 - held.points.row(1).array()).max(0.0);
   EXPECT_GT(depth.maxCoeff(), 0);
   EXPECT_LT(depth.maxCoeff(), 1e-3);
@@ -248,7 +251,7 @@ TEST(Polygon, SegmentsOfOwnStiffnessSinkEqually) {
        .stiffnesses = floor * problem.rest_lengths}};
   Eigen::Matrix3Xd bent = start;
   bent.row(1).segment(2, n - 3).array() += 0.02;
-  const PolygonResult rest = test::usable(solve_polygon(problem, bent));
+  const PolygonResult rest = test::require_usable(solve_polygon(problem, bent));
   EXPECT_LT((rest.points - start).cwiseAbs().maxCoeff(), 1e-10);
 }
 
@@ -272,7 +275,7 @@ TEST(Polygon, AToleranceOfLengthsLeavesNoForce) {
     PolygonProblem problem = between_clamps(JointLaw::hooke, 17, 0.8, gamma);
     problem.stretch_stiffness = 4e8;
     const PolygonResult result =
-        test::usable(solve_polygon(problem, arch(problem, 0.8, 0), {.tolerance = 5e-8}));
+        test::require_usable(solve_polygon(problem, arch(problem, 0.8, 0), {.tolerance = 5e-8}));
     const double acting = result.grip_forces.colwise().norm().maxCoeff();
     EXPECT_LT(result.residual, 1e-6 * acting) << gamma;
   }
@@ -298,9 +301,9 @@ TEST(Polygon, ReturnsTheResidualOfThePointsThatItReturns) {
 TEST(Polygon, RefusesBadProblems) {
   const PolygonProblem good = between_clamps(JointLaw::hooke, 10, 0.8, 5);
   const Eigen::Matrix3Xd start = arch(good, 0.8, 0);
-  const auto refused = [&](const auto& spoil) {
+  const auto refused = [&](const auto& invalidate) {
     PolygonProblem problem = good;
-    spoil(problem);
+    invalidate(problem);
     EXPECT_THROW((void)solve_polygon(problem, start), std::invalid_argument);
   };
   refused([](PolygonProblem& p) { p.stiffness = 0; });

@@ -151,7 +151,7 @@ TwistedPolygon twisted(const SpatialRod& scene, Eigen::Index points, const Equil
   const Eigen::Matrix3Xd start = solve_energy(without).sample(s).points;
   Eigen::Matrix3Xd held = start;
   for (const HeldPoint& point : problem.held) held.col(point.point) = point.position;
-  const PolygonResult rest = test::usable(solve_polygon(problem, held));
+  const PolygonResult rest = test::require_usable(solve_polygon(problem, held));
   problem.twists = {scene.twist(rest.points)};
   TwistedPolygon polygon{twist_polygon(problem, rest.points), 0};
   const Eigen::Matrix3Xd apart = polygon.result.points - rod.sample(s).points;
@@ -163,7 +163,7 @@ TEST(PolygonTwist, ApproachesTheRodInSecondOrder) {
   for (const double roll : {-2.0, pi, 2 * pi}) {
     SpatialRod scene;
     scene.roll = roll;
-    const Equilibrium rod = test::usable(solve_energy(scene.rod()));
+    const Equilibrium rod = test::require_usable(solve_energy(scene.rod()));
     double last_rms = 0;
     double last_twist = 0;
     for (const Eigen::Index points : {20, 40, 80, 160}) {

@@ -62,7 +62,7 @@ inline energy_model::Problem random_touching_problem(unsigned seed, bool space,
 
 /// Adds a body that the shape without it would penetrate, clear of the grips. @return whether there
 /// is one
-inline bool put_in_the_way(std::mt19937& random, bool space, energy_model::Problem& problem) {
+inline bool add_penetrated_body(std::mt19937& random, bool space, energy_model::Problem& problem) {
   const auto uniform = [&random](double low, double high) {
     return low + (high - low) * std::generate_canonical<double, 53>(random);
   };
@@ -118,13 +118,14 @@ inline std::optional<energy_model::Problem> random_problem_with_body(unsigned se
     problem.grips.push_back({1, reach * direction()});
     if (random() % 2 == 0) problem.grips[1].direction = direction();
   }
-  if (!put_in_the_way(random, space, problem)) return std::nullopt;
+  if (!add_penetrated_body(random, space, problem)) return std::nullopt;
   return problem;
 }
 
 /// Adds a half-space that the shape without it would penetrate, clear of the grips. @return whether
 /// there is one
-inline bool put_below(std::mt19937& random, bool space, energy_model::Problem& problem) {
+inline bool add_penetrated_half_space(std::mt19937& random, bool space,
+                                      energy_model::Problem& problem) {
   const auto uniform = [&random](double low, double high) {
     return low + (high - low) * std::generate_canonical<double, 53>(random);
   };
@@ -168,8 +169,8 @@ inline std::optional<energy_model::Problem> random_framed_problem(unsigned seed,
   const double reach = uniform(0.4, 0.95);
   problem.grips.push_back({1, reach * direction(0.5), direction(-0.2), energy_model::FrameHold{}});
   problem.grips[1].frame->roll = uniform(-1, 1) * 2 * M_PI;
-  const bool placed = random() % 2 == 0 ? put_below(random, space, problem)
-                                        : put_in_the_way(random, space, problem);
+  const bool placed = random() % 2 == 0 ? add_penetrated_half_space(random, space, problem)
+                                        : add_penetrated_body(random, space, problem);
   if (!placed) return std::nullopt;
   return problem;
 }

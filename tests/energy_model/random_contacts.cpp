@@ -61,17 +61,18 @@ Options read_options(int argc, char** argv) {
 
 /// Whether the polygon that begins as a shape comes to rest elsewhere, with less energy: then that
 /// is no minimum.
-bool is_left_by_polygon(const Problem& problem, const Equilibrium& shape) {
+bool polygon_finds_lower_minimum(const Problem& problem, const Equilibrium& shape) {
   constexpr Eigen::Index segments = 96;
-  constexpr double aside = 0.05;     // in l; polygons of 96 segments are off by less
-  constexpr double falls_by = 0.02;  // decrease of energy divided by 1 + energy
+  constexpr double least_movement = 0.05;  // in l; polygons of 96 segments are off by less
+  constexpr double least_decrease = 0.02;  // decrease of energy divided by 1 + energy
   const dlo::test::PolygonOfRod polygon(problem, shape, segments);
   Eigen::Matrix3Xd forces(3, polygon.points.cols());
   const double energy = polygon_energy(polygon.problem, polygon.points, forces);
   const dlo::energy_model::PolygonResult rest = polygon.at_rest();
   if (!succeeded(rest.status)) return false;
   const double moved = (rest.points - polygon.points).colwise().norm().maxCoeff();
-  return moved > aside * problem.length && energy - rest.energy > falls_by * (1 + std::abs(energy));
+  return moved > least_movement * problem.length &&
+         energy - rest.energy > least_decrease * (1 + std::abs(energy));
 }
 
 /// @return how many overran the limit, or are left by a polygon
@@ -100,7 +101,7 @@ int run(const Options& options, const char* kind, bool space, unsigned scenes,
     touching += rod.contacts.empty() ? 0 : 1;
     slow += spent > 1.5 * options.time_limit ? 1 : 0;
     if (succeeded(rod.status)) {
-      if (rod.twists.empty() || !is_left_by_polygon(*problem, rod)) continue;
+      if (rod.twists.empty() || !polygon_finds_lower_minimum(*problem, rod)) continue;
       ++left;
       std::printf("  %s, seed %u: a polygon leaves it for less energy\n", kind, seed);
       continue;

@@ -142,7 +142,7 @@ struct RandomLimits {
 };
 
 /// Returns a rod of unit length and stiffness as described at random_problem().
-inline energy_model::Problem random_rod_held(RandomNumbers& random, RandomSpace space,
+inline energy_model::Problem random_held_rod(RandomNumbers& random, RandomSpace space,
                                              const RandomLimits& limits = {}) {
   energy_model::Problem problem;
   problem.length = 1;
@@ -202,15 +202,14 @@ inline energy_model::Problem random_problem(std::uint64_t number, RandomSpace sp
   if (space == RandomSpace::mixed) return mixed_problem(number);
   if (space == RandomSpace::strip) return strip_problem(number);
   RandomNumbers random(2 * number + (space == RandomSpace::space ? 1 : 0));
-  return random_rod_held(random, space);
+  return random_held_rod(random, space);
 }
 
 /// Returns a rod of unit length and stiffness between two clamps at its ends, with `pin` a pin
 /// between them. Grips and clamps' directions are those of a random curve; in one of three problems
 /// the directions are random ones, in one of three the grips are moved towards each other. Gamma is
 /// between 0.1 and 1e4.
-inline energy_model::Problem random_between_clamps(std::uint64_t number, RandomSpace space,
-                                                   bool pin) {
+inline energy_model::Problem random_clamped_rod(std::uint64_t number, RandomSpace space, bool pin) {
   constexpr std::uint64_t of_their_own = 1U << 29U;
   RandomNumbers random(of_their_own + 4 * number + (space == RandomSpace::space ? 1 : 0) +
                        (pin ? 2 : 0));
@@ -257,7 +256,7 @@ inline energy_model::Problem mixed_problem(std::uint64_t number) {
   constexpr double most_turns = 3;
   RandomNumbers random(of_their_own + number);
   const bool planar = number % 2 == 0;
-  energy_model::Problem problem = random_rod_held(
+  energy_model::Problem problem = random_held_rod(
       random, planar ? RandomSpace::plane : RandomSpace::space, {.grips = 4, .gamma_exponent = 5});
   if (planar) return problem;
   problem.torsional_stiffness = random.uniform(0.4, 1.2);

@@ -131,7 +131,7 @@ int run(const Options& options, RandomSpace space, std::uint64_t count) {
   int bad = 0;
   for (std::uint64_t number = options.first; number < options.first + count; ++number) {
     const dlo::energy_model::Problem problem = dlo::test::random_problem(number, space);
-    const auto complain = [&](const std::string& what) {
+    const auto report = [&](const std::string& what) {
       std::printf("  %s %lu: %s\n", kind, number, what.c_str());
       // A scene file has one natural curvature, not a series.
       if (options.folder.empty() || has_material_directors(problem)) return;
@@ -143,15 +143,15 @@ int run(const Options& options, RandomSpace space, std::uint64_t count) {
     energy.add(number, scene.energy, scene.energy_defects.worst(), scene.energy.seconds);
     exact.add(number, scene.exact, scene.exact_defects.worst(), scene.exact.seconds);
     ++agreements[scene.agreement];
-    if (!succeeded(scene.energy.status)) complain("energy: " + scene.energy.message);
-    if (!succeeded(scene.exact.status)) complain("exact: " + scene.exact.message);
+    if (!succeeded(scene.energy.status)) report("energy: " + scene.energy.message);
+    if (!succeeded(scene.exact.status)) report("exact: " + scene.exact.message);
     bool wrong = false;
     if (scene.agreement == Agreement::contradict) {
-      complain("shapes " + std::to_string(scene.distance) + " l apart, energies " +
-               std::to_string(scene.energy.energy.total()) + " and " +
-               std::to_string(scene.exact.energy.total()) + ", smallest eigenvalue " +
-               std::to_string(scene.energy.smallest_eigenvalue) + " and " +
-               std::to_string(scene.exact.smallest_eigenvalue));
+      report("shapes " + std::to_string(scene.distance) + " l apart, energies " +
+             std::to_string(scene.energy.energy.total()) + " and " +
+             std::to_string(scene.exact.energy.total()) + ", smallest eigenvalue " +
+             std::to_string(scene.energy.smallest_eigenvalue) + " and " +
+             std::to_string(scene.exact.smallest_eigenvalue));
       wrong = true;
     }
     if (scene.agreement == Agreement::both_stable &&
@@ -160,13 +160,13 @@ int run(const Options& options, RandomSpace space, std::uint64_t count) {
     }
     const double defect = std::max(scene.energy_defects.worst(), scene.exact_defects.worst());
     if (!(defect <= largest_defect)) {
-      complain("out of balance: " + std::to_string(defect));
+      report("out of balance: " + std::to_string(defect));
       wrong = true;
     }
     // A solve may finish the evaluation that it is in.
     const double slowest = std::max(scene.energy.seconds, scene.exact.seconds);
     if (slowest > 1.5 * options.time_limit) {
-      complain("took " + std::to_string(slowest) + " s");
+      report("took " + std::to_string(slowest) + " s");
       wrong = true;
     }
     bad += wrong ? 1 : 0;

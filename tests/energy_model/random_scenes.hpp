@@ -80,8 +80,8 @@ inline Agreement agreement_of(const energy_model::Problem& problem,
     return Agreement::image;
   }
   // NaN, an eigenvalue that was not computed, proves nothing.
-  const bool proven = a.smallest_eigenvalue >= stable && b.smallest_eigenvalue >= stable;
-  return proven ? Agreement::both_stable : Agreement::contradict;
+  const bool both_certified = a.smallest_eigenvalue >= stable && b.smallest_eigenvalue >= stable;
+  return both_certified ? Agreement::both_stable : Agreement::contradict;
 }
 
 /// Start of `exact`. search: `exact` searches. energy: `exact` confirms or corrects the energy
@@ -90,7 +90,7 @@ enum class ExactFrom { search, energy };
 
 /// Whether there is a clamp without a frame between two clamps that hold frames; `exact` refuses
 /// this for a round straight rod.
-inline bool passes_torque(const energy_model::Problem& problem) {
+inline bool has_clamp_without_frame_between(const energy_model::Problem& problem) {
   std::vector<const energy_model::Grip*> clamps;
   for (const energy_model::Grip& grip : problem.grips) {
     if (grip.direction) clamps.push_back(&grip);
@@ -114,7 +114,7 @@ inline ComparedScene compare_models(std::uint64_t number, const energy_model::Pr
   const bool energy = succeeded(scene.energy.status);
   if (energy) scene.energy_defects = defects_of(problem, scene.energy);
   if (from == ExactFrom::energy && !energy) return scene;
-  if (!has_material_directors(problem) && passes_torque(problem)) {
+  if (!has_material_directors(problem) && has_clamp_without_frame_between(problem)) {
     scene.exact.status = energy_model::SolveStatus::failed;
     scene.exact.message = "passes torque on, which exact refuses";
     return scene;

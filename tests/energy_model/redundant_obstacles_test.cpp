@@ -22,7 +22,7 @@ using Body = obstacle::Body;
 /// A clamped rod above a floor or a table, and bodies inside the obstacle below it.
 struct RedundantScene {
   Problem plain;
-  Problem with_more;
+  Problem with_redundant;
 };
 
 class RedundantScenes {
@@ -37,8 +37,8 @@ class RedundantScenes {
         table ? Body::box({0.5, -height - 0.2, 0}, axes_, {4, 0.4, 2}, between(0.01, 0.05))
               : Body::half_space({0, -height, 0}, {0, 1, 0});
     scene.plain.obstacles = {{ground}};
-    scene.with_more = scene.plain;
-    std::vector<Obstacle>& all = scene.with_more.obstacles;
+    scene.with_redundant = scene.plain;
+    std::vector<Obstacle>& all = scene.with_redundant.obstacles;
     for (unsigned count = 1 + random_() % 3; count > 0; --count) {
       all.push_back({within(ground, height)});
     }
@@ -84,15 +84,15 @@ TEST(RedundantObstacles, AreAsIfTheyWereNotThere) {
     const RedundantScene scene = scenes.next();
     const EnergyOptions options{.time_limit = 60};
     const Equilibrium alone = solve_energy(scene.plain, options);
-    const Equilibrium found = solve_energy(scene.with_more, options);
+    const Equilibrium found = solve_energy(scene.with_redundant, options);
     ASSERT_EQ(found.status, alone.status) << i << " " << found.message;
     if (!succeeded(found.status)) continue;
     ++certified;
-    test::expect_only_pushed(scene.with_more, found);
+    test::expect_only_pushed(scene.with_redundant, found);
     EXPECT_NEAR(found.energy.total(), alone.energy.total(),
                 1e-9 * std::abs(alone.energy.total()) + 1e-9)
         << i;
-    EXPECT_LT(test::gap_between(found, alone, s), 1e-7) << i;
+    EXPECT_LT(test::largest_point_distance(found, alone, s), 1e-7) << i;
     Eigen::Vector3d pushed = Eigen::Vector3d::Zero();
     for (const Eigen::Vector3d& force : found.obstacles) pushed += force;
     EXPECT_LT((pushed - alone.obstacles.front()).norm(), 1e-6 * (1 + pushed.norm())) << i;
@@ -108,7 +108,7 @@ TEST(RedundantObstacles, ABodyThatSticksOutCounts) {
   problem.obstacles = {{Body::half_space({0, -0.2, 0}, {0, 1, 0})},
                        {Body::box({0.5, -0.2, 0}, axes, {0.3, 0.1, 0.4}, 0.03)},
                        {Body::box({3, -0.2, 0}, axes, {0.3, 0.1, 0.4}, 0.03)}};
-  const Equilibrium found = test::usable(solve_energy(problem));
+  const Equilibrium found = test::require_usable(solve_energy(problem));
   EXPECT_GT(found.obstacles.at(1).norm(), 0);
   EXPECT_EQ(found.obstacles.at(2).norm(), 0);
   test::expect_only_pushed(problem, found);
@@ -125,12 +125,12 @@ TEST(RedundantObstacles, FloorsThatAreTiltedALittleAreAsTheHighestOne) {
           std::vector{-tilt, 2 * tilt, tilt}}) {
       Problem problem = test::heavy_cantilever(80, 0);
       problem.obstacles = {floor(*std::ranges::max_element(slopes))};
-      const Equilibrium highest = test::usable(solve_energy(problem));
+      const Equilibrium highest = test::require_usable(solve_energy(problem));
       problem.obstacles.clear();
       for (const double slope : slopes) problem.obstacles.push_back(floor(slope));
       const Equilibrium found = solve_energy(problem);
       ASSERT_EQ(found.status, SolveStatus::converged) << tilt << found.message;
-      EXPECT_LT(test::gap_between(found, highest), 1e-8) << tilt;
+      EXPECT_LT(test::largest_point_distance(found, highest), 1e-8) << tilt;
       EXPECT_LE(found.penetration, allowed_penetration) << tilt;
     }
   }
@@ -144,8 +144,8 @@ TEST(RedundantObstacles, ABlockSunkToItsTopIsNoWall) {
   const Equilibrium alone = solve_energy(problem);
   const Eigen::Matrix3d axes = Eigen::Matrix3d::Identity();
   problem.obstacles.push_back({Body::box({0.1, -0.25 + 5e-7, 0}, axes, {0.1, 0.1, 4}, 0.01)});
-  const Equilibrium found = test::usable(solve_energy(problem));
-  EXPECT_LT(test::gap_between(found, alone), 1e-8);
+  const Equilibrium found = test::require_usable(solve_energy(problem));
+  EXPECT_LT(test::largest_point_distance(found, alone), 1e-8);
   EXPECT_LT(found.evaluations, 2 * alone.evaluations);
 }
 
@@ -171,7 +171,7 @@ TEST(RedundantObstacles, ABlockThatStandsOnTheFloorCarriesARodAsADeeperOne) {
     EXPECT_LT(found.evaluations, 5000);  // from 1180 and 2322; caught there, 9010 and 16250
     const Equilibrium deeper =
         test::converged(solve_energy(on_block(depth + 0.3), {.start = &found}));
-    EXPECT_LT(test::gap_between(found, deeper), 1e-8);
+    EXPECT_LT(test::largest_point_distance(found, deeper), 1e-8);
   }
 }
 

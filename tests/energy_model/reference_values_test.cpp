@@ -30,7 +30,7 @@ TEST_P(ReferenceValues, OfACantileverWithATipLoad) {
   for (const auto& [load, expected] : values.items()) {
     Problem problem = heavy_cantilever(0, 0);
     problem.loads = {{1.0, {0, -std::stod(load), 0}}};
-    const Equilibrium result = test::usable(solve(problem, GetParam()));
+    const Equilibrium result = test::require_usable(solve(problem, GetParam()));
     const Samples samples = test::sample_at(result, 1);
     EXPECT_NEAR(samples.points(0, 0), expected.at("x_over_L"), tolerance) << load;
     EXPECT_NEAR(samples.points(1, 0), expected.at("y_over_L"), tolerance) << load;
@@ -59,7 +59,8 @@ TEST_P(ReferenceValues, OfHeavyCantilevers) {
     double gamma = 0;
     double degrees = 0;
     ASSERT_EQ(std::sscanf(name.c_str(), "Gamma=%lf,phi0=%lf", &gamma, &degrees), 2) << name;
-    const Equilibrium result = test::usable(solve(heavy_cantilever(gamma, degrees), GetParam()));
+    const Equilibrium result =
+        test::require_usable(solve(heavy_cantilever(gamma, degrees), GetParam()));
     const Samples samples = test::sample_at(result, 1);
     EXPECT_NEAR(samples.points(0, 0), expected.at("tip_x"), tolerance) << name;
     EXPECT_NEAR(samples.points(1, 0), expected.at("tip_y"), tolerance) << name;
@@ -80,7 +81,7 @@ TEST_P(ReferenceValues, OfThePapersRod) {
     problem.bending_stiffness = expected.at("EI").get<double>();
     problem.weight_per_length.y() =
         -expected.at("Gamma").get<double>() * problem.bending_stiffness / 0.125;
-    const Equilibrium result = test::usable(solve(problem, GetParam()));
+    const Equilibrium result = test::require_usable(solve(problem, GetParam()));
     const auto s = expected.at("s_m").get<std::vector<double>>();
     const auto x = expected.at("x_m").get<std::vector<double>>();
     const auto y = expected.at("y_m").get<std::vector<double>>();

@@ -34,7 +34,7 @@ MovingRod cantilever_over(double gamma, const obstacle::Body& body) {
 }
 
 /// Arc lengths that are much closer than the points at which contact is checked.
-const std::vector<double> dense = equal_arc_lengths(1, 4001);
+const std::vector<double> dense_arc_lengths = equal_arc_lengths(1, 4001);
 
 /// Checks what all motions satisfy: no penetration beyond `depth`, losses that grow, the energy
 /// balance and, for a half-space, contact forces that only push.
@@ -48,7 +48,7 @@ void expect_contact(const MovingRod& rod, const Dynamics& result, double depth, 
     if (!rod.obstacle_motions.empty()) {
       moved = rod.obstacle_motions[0](frame.time).position - rod.obstacle_motions[0](0).position;
     }
-    const Eigen::Matrix3Xd points = frame.sample(dense).points.colwise() - moved;
+    const Eigen::Matrix3Xd points = frame.sample(dense_arc_lengths).points.colwise() - moved;
     EXPECT_GE(rod.problem.obstacles[0].body.clearances(points).minCoeff(), -depth) << frame.time;
     EXPECT_GE(frame.energy.lost, lost - 1e-12) << frame.time;
     lost = frame.energy.lost;
@@ -106,7 +106,7 @@ TEST(RigidContactDynamics, DampedItComesToRestAsInEquilibrium) {
         std::tuple(peg, 2.0, 16)}) {
     MovingRod rod = cantilever_over(gamma, body);
     rod.material_damping = 0.05;
-    const Equilibrium rest = test::usable(solve_energy(rod.problem));
+    const Equilibrium rest = test::require_usable(solve_energy(rod.problem));
     ASSERT_GT(rest.obstacles[0].norm(), 0.1 * gamma);
     double before = 0;
     for (const double depth : {1e-3, 1e-4}) {
@@ -115,7 +115,10 @@ TEST(RigidContactDynamics, DampedItComesToRestAsInEquilibrium) {
       const MovingFrame& last = result.frames.back();
       EXPECT_LT(last.energy.kinetic, 1e-8);
       const double apart =
-          (last.sample(dense).points - rest.sample(dense).points).colwise().norm().maxCoeff();
+          (last.sample(dense_arc_lengths).points - rest.sample(dense_arc_lengths).points)
+              .colwise()
+              .norm()
+              .maxCoeff();
       EXPECT_LT(apart, depth / 2);
       // The position of a force at 0.5 is known to `depth`, so the force has a relative error of 3
       // depth / 0.5.
@@ -191,7 +194,7 @@ TEST(RigidContactDynamics, AnObstacleThatTurnsCarriesTheRod) {
   EXPECT_LE(result.deepest_contact, 1e-3);
   const Eigen::AngleAxisd turn(0.5, Vector3d::UnitZ());
   const Vector3d pivot(0, -0.1, 0);
-  Eigen::Matrix3Xd points = result.frames.back().sample(dense).points.colwise() - pivot;
+  Eigen::Matrix3Xd points = result.frames.back().sample(dense_arc_lengths).points.colwise() - pivot;
   points = (turn.inverse().toRotationMatrix() * points).colwise() + pivot;
   EXPECT_GE(bar.clearances(points).minCoeff(), -2e-3);
   EXPECT_GT(result.frames.back().energy.work, 0.05);

@@ -80,10 +80,10 @@ class RigidPolygon {
     velocity += dt / 2 * accelerations(velocity);
     const Eigen::Matrix2Xd before = points_;
     points_ += dt * velocity;
-    hold_lengths(before);
+    satisfy_length_constraints(before);
     velocity = (points_ - before) / dt;
     velocity += dt / 2 * accelerations(velocity);
-    hold_velocities(velocity);
+    satisfy_velocity_constraints(velocity);
   }
 
   [[nodiscard]] Eigen::Matrix2Xd accelerations(const Eigen::Matrix2Xd& velocity) const {
@@ -150,7 +150,7 @@ class RigidPolygon {
     return points.rightCols(count_) - points.middleCols(1, count_);
   }
 
-  void hold_lengths(const Eigen::Matrix2Xd& before) {
+  void satisfy_length_constraints(const Eigen::Matrix2Xd& before) {
     const Eigen::Matrix2Xd old = segments(before);
     for (int i = 0; i < 10; ++i) {
       const Eigen::Matrix2Xd now = segments(points_);
@@ -161,7 +161,7 @@ class RigidPolygon {
     }
   }
 
-  void hold_velocities(Eigen::Matrix2Xd& velocity) const {
+  void satisfy_velocity_constraints(Eigen::Matrix2Xd& velocity) const {
     const Eigen::Matrix2Xd now = segments(points_);
     correct(velocity, now, now, now.cwiseProduct(segments(velocity)).colwise().sum().transpose());
   }

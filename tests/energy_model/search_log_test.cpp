@@ -15,13 +15,13 @@
 namespace dlo::energy_model {
 namespace {
 
-int found_first(const EnergySearch& search) {
+int new_equilibria(const EnergySearch& search) {
   int sum = 0;
-  for (const SearchStrategy& strategy : search.strategies) sum += strategy.found_first;
+  for (const SearchStrategy& strategy : search.strategies) sum += strategy.new_equilibria;
   return sum;
 }
 
-std::string left_out(const EnergySearch& search) {
+std::string omitted_text(const EnergySearch& search) {
   std::string all;
   for (const std::string& what : search.omitted) all += what + "\n";
   return all;
@@ -29,13 +29,13 @@ std::string left_out(const EnergySearch& search) {
 
 /// Expects that the strategies together count each equilibrium of a rod of one span exactly once as
 /// found first.
-void expect_accounted(const Problem& problem) {
+void expect_counts_add_up(const Problem& problem) {
   const EnergySearch search = search_energy(problem);
   ASSERT_FALSE(search.strategies.empty());
   const bool any = search.equilibria.front().status != SolveStatus::failed;
-  EXPECT_EQ(found_first(search), any ? static_cast<int>(search.equilibria.size()) : 0);
+  EXPECT_EQ(new_equilibria(search), any ? static_cast<int>(search.equilibria.size()) : 0);
   for (const SearchStrategy& strategy : search.strategies) {
-    EXPECT_GE(strategy.tried, strategy.found_first) << strategy.name;
+    EXPECT_GE(strategy.tried, strategy.new_equilibria) << strategy.name;
     EXPECT_GT(strategy.tried, 0) << strategy.name;
   }
   EXPECT_EQ(search.equilibria.size(), all_energy(problem).size());
@@ -102,33 +102,33 @@ TEST(SearchLog, AShapeThatTurnsFreelyIsListedOnce) {
 }
 
 TEST(SearchLog, AccountsForEveryEquilibriumOfOneSpan) {
-  expect_accounted(heavy_cantilever(1, 0));
-  expect_accounted(heavy_cantilever(60, 0));
-  expect_accounted(two_clamps(10, 0.6));
+  expect_counts_add_up(heavy_cantilever(1, 0));
+  expect_counts_add_up(heavy_cantilever(60, 0));
+  expect_counts_add_up(two_clamps(10, 0.6));
   Problem pins = heavy_cantilever(10, 0);
   pins.grips = {{0, {0, 0, 0}}, {1, {0.3, 0.1, 0}}};
-  expect_accounted(pins);
+  expect_counts_add_up(pins);
   Problem curved = heavy_cantilever(20, -90);
   curved.natural_strains = {{0, 6, 0}};
   curved.torsional_stiffness = 0.7;
-  expect_accounted(curved);
-  expect_accounted(test::framed_clamps(1, 0.7, 0.7, 2));
+  expect_counts_add_up(curved);
+  expect_counts_add_up(test::framed_clamps(1, 0.7, 0.7, 2));
 }
 
 TEST(SearchLog, ReportsWhatAFloorOmitsAndCountsShapesThatLieOnIt) {
   const Problem problem = test::over_floor(50, 0.1);
-  expect_accounted(problem);
-  EXPECT_NE(left_out(search_energy(problem)).find("polygons"), std::string::npos);
+  expect_counts_add_up(problem);
+  EXPECT_NE(omitted_text(search_energy(problem)).find("polygons"), std::string::npos);
 }
 
 TEST(SearchLog, ReportsThatTheTimeLimitInterruptedIt) {
   const EnergySearch search = search_energy(two_clamps(10, 0.6), {.time_limit = 1e-6});
-  EXPECT_NE(left_out(search).find("time limit"), std::string::npos) << left_out(search);
+  EXPECT_NE(omitted_text(search).find("time limit"), std::string::npos) << omitted_text(search);
   for (const Equilibrium& found : search.equilibria) {
     EXPECT_NE(found.message.find("time limit"), std::string::npos) << found.message;
   }
   const EnergySearch whole = search_energy(two_clamps(10, 0.6));
-  EXPECT_EQ(left_out(whole).find("time limit"), std::string::npos) << left_out(whole);
+  EXPECT_EQ(omitted_text(whole).find("time limit"), std::string::npos) << omitted_text(whole);
 }
 
 TEST(SearchLog, ReportsThatThereAreMoreCombinationsThanItLists) {
@@ -139,8 +139,8 @@ TEST(SearchLog, ReportsThatThereAreMoreCombinationsThanItLists) {
   }
   const EnergySearch search = search_energy(problem);
   EXPECT_EQ(search.equilibria.size(), 64U);
-  EXPECT_NE(left_out(search).find("combinations"), std::string::npos) << left_out(search);
-  EXPECT_TRUE(left_out(search_energy(heavy_cantilever(1, 0))).empty());
+  EXPECT_NE(omitted_text(search).find("combinations"), std::string::npos) << omitted_text(search);
+  EXPECT_TRUE(omitted_text(search_energy(heavy_cantilever(1, 0))).empty());
 }
 
 }  // namespace

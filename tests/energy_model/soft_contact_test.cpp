@@ -133,7 +133,7 @@ Problem random_scene(int seed) {
 }
 
 /// Returns the rest shape after a temporary load has pushed the rod out of its plane.
-Equilibrium after_a_push(const Problem& problem, const Equilibrium& shape) {
+Equilibrium relax_after_disturbance(const Problem& problem, const Equilibrium& shape) {
   Problem pushed = problem;
   pushed.loads = {{0.6, {0, 0, 0.01}}};
   const Equilibrium aside = solve_energy(pushed, {.start = &shape});
@@ -162,7 +162,7 @@ TEST(SoftContact, RandomScenesListEachEquilibriumOnceWithTheForceOfItsEnergy) {
     }
     for (const Equilibrium& state : found) {
       if (state.status != SolveStatus::converged) continue;
-      const Equilibrium back = after_a_push(problem, state);
+      const Equilibrium back = relax_after_disturbance(problem, state);
       if (back.status != SolveStatus::converged) continue;
       EXPECT_GT(back.energy.total(), state.energy.total() - 1e-6) << seed;
     }
@@ -213,7 +213,7 @@ TEST(SoftContact, WhatIsFollowedIsTheShapeThatItWas) {
   const Equilibrium first = test::converged(solver.solve(problem));
   const Equilibrium again = solver.follow(problem);
   if (solver.followed()) {
-    EXPECT_LT(test::gap_between(again, first), 1e-6);
+    EXPECT_LT(test::largest_point_distance(again, first), 1e-6);
   }
   const Equilibrium started = test::converged(solve_energy(problem, {.start = &first}));
   EXPECT_NEAR(started.energy.total(), first.energy.total(), 1e-6);

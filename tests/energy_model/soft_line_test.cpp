@@ -41,15 +41,15 @@ Problem between_clamps(double stiffness) {
 }
 
 /// Returns the largest distance of two shapes at equal arc lengths, for l = 1.
-double lines_apart(const Equilibrium& a, const Equilibrium& b) {
-  return test::gap_between(a, b, equal_arc_lengths(1, 501));
+double largest_line_distance(const Equilibrium& a, const Equilibrium& b) {
+  return test::largest_point_distance(a, b, equal_arc_lengths(1, 501));
 }
 
 // A catenary does not include a stream, nor follower loads of a line that is pulled straight.
 TEST(SoftLine, IsNoneOfLoadsWithoutAPotential) {
   Problem dragged = between_pins(1e-12, {0.7, 0, 0.1});
   dragged.drag = Drag{.velocity = {0, 1, 0}, .normal = 0.2};
-  EXPECT_FALSE(soft_line(dragged).has_value());
+  EXPECT_FALSE(catenary_limit(dragged).has_value());
   EXPECT_THROW((void)solve_energy(dragged), std::invalid_argument);
   Problem taut = between_pins(1, {0, 0, -1});  // hangs, so that no force is across it
   EXPECT_TRUE(taut_line(taut).has_value());
@@ -65,7 +65,7 @@ TEST(SoftLine, OutlivesItsProblem) {
     const Problem problem = between_clamps(1e-12);
     kept = solve_exact(problem);
   }
-  EXPECT_EQ(lines_apart(kept, solve_exact(between_clamps(1e-12))), 0);
+  EXPECT_EQ(largest_line_distance(kept, solve_exact(between_clamps(1e-12))), 0);
 }
 
 TEST(SoftLine, HasTheTensionOfTheCatenary) {
@@ -90,10 +90,10 @@ TEST(SoftLine, IsAsNearToTheRodAsItSays) {
     double before = 0;
     for (const double stiffness : {1e-5, 1e-6, 1e-7}) {
       const Problem problem = make(stiffness);
-      const std::optional<Equilibrium> soft = soft_line(problem);
+      const std::optional<Equilibrium> soft = catenary_limit(problem);
       ASSERT_TRUE(soft);
       const Equilibrium rod = test::converged(solve_energy(problem));
-      const double missed = lines_apart(*soft, rod);
+      const double missed = largest_line_distance(*soft, rod);
       EXPECT_LT(missed, soft->error_estimate) << stiffness;
       // The error is of second order in the length of the bending layers; this length is
       // proportional to EI^(1/2).
@@ -118,10 +118,10 @@ TEST(SoftLine, HangsFromAClamp) {
   for (const double stiffness : {1e-4, 1e-5}) {
     Problem problem = line(stiffness);
     problem.grips = {{1, {0, 0, 0}, Vector3d(-1, 0, 0.3), {}}};
-    const std::optional<Equilibrium> soft = soft_line(problem);
+    const std::optional<Equilibrium> soft = catenary_limit(problem);
     ASSERT_TRUE(soft);
     const Equilibrium rod = solve_energy(problem);
-    const double missed = lines_apart(*soft, rod);
+    const double missed = largest_line_distance(*soft, rod);
     EXPECT_LT(missed, soft->error_estimate);
     if (before > 0) {
       EXPECT_GT(before / missed, 7);
@@ -158,10 +158,10 @@ TEST(SoftLine, LiesOnAFloor) {
 
 TEST(SoftLine, LiftsOffAsTheRodDoes) {
   const Problem problem = on_floor(1e-5);
-  const std::optional<Equilibrium> soft = soft_line(problem);
+  const std::optional<Equilibrium> soft = catenary_limit(problem);
   ASSERT_TRUE(soft);
-  const Equilibrium rod = test::usable(solve_energy(problem));
-  EXPECT_LT(lines_apart(*soft, rod), soft->error_estimate);
+  const Equilibrium rod = test::require_usable(solve_energy(problem));
+  EXPECT_LT(largest_line_distance(*soft, rod), soft->error_estimate);
   ASSERT_EQ(rod.contacts.size(), 1U);
   EXPECT_NEAR(soft->contacts[0].end, rod.contacts[0].end, 1e-3);
   EXPECT_NEAR(soft->contacts[0].end_force / rod.contacts[0].end_force, 1, 0.05);
@@ -177,7 +177,7 @@ TEST(LineWithoutSearch, IsNotVerifiedWhereItsForcesDoNotBalance) {
   problem.loads = {{1, Vector3d(3, 4, 0)}};
   for (const double far : {0.0, 1e10}) {
     problem.grips = {{0, {far, far, 0}, {}, {}}, {5, {far + 3, far + 4, 0}, {}, {}}};
-    const std::optional<Equilibrium> taut = line_without_search(problem);
+    const std::optional<Equilibrium> taut = shape_without_search(problem);
     ASSERT_TRUE(taut);
     if (far == 0) {
       EXPECT_EQ(taut->status, SolveStatus::converged) << taut->message;
@@ -189,15 +189,15 @@ TEST(LineWithoutSearch, IsNotVerifiedWhereItsForcesDoNotBalance) {
 }
 
 TEST(SoftLine, TakesNothingElse) {
-  EXPECT_FALSE(is_soft_line(line(1e-9)));
+  EXPECT_FALSE(is_catenary_limit(line(1e-9)));
   Problem upright = line(1e-12);
   upright.grips = {{0, {0, 0, 0}, Vector3d::UnitZ(), {}}};
-  EXPECT_FALSE(soft_line(upright));
+  EXPECT_FALSE(catenary_limit(upright));
   Problem loaded = between_clamps(1e-12);
   loaded.loads = {{0.5, {0, 0, -1}}};
-  EXPECT_FALSE(soft_line(loaded));
+  EXPECT_FALSE(catenary_limit(loaded));
   Problem folded = between_pins(1e-12, {0, 0, 0.2});
-  EXPECT_FALSE(soft_line(folded));
+  EXPECT_FALSE(catenary_limit(folded));
 }
 
 }  // namespace

@@ -26,7 +26,7 @@ template <typename Result>
 
 /// Returns a solver's result whose shape is usable: otherwise its message ends the test.
 template <typename Result>
-[[nodiscard]] Result usable(Result result) {
+[[nodiscard]] Result require_usable(Result result) {
   if (!succeeded(result.status)) throw std::runtime_error("no shape: " + result.message);
   return result;
 }
@@ -45,8 +45,9 @@ Eigen::Vector3d point_at(const Shape& shape, double s) {
 /// Returns the largest distance of two shapes' points at the same arc lengths [m].
 /// @param s  arc lengths [m]; default: 41 of a rod of unit length
 template <typename Shape>
-double gap_between(const Shape& a, const Shape& b,
-                   const std::vector<double>& s = energy_model::equal_arc_lengths(1, 41)) {
+double largest_point_distance(const Shape& a, const Shape& b,
+                              const std::vector<double>& s = energy_model::equal_arc_lengths(1,
+                                                                                             41)) {
   return (a.sample(s).points - b.sample(s).points).colwise().norm().maxCoeff();
 }
 

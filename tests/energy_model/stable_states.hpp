@@ -119,7 +119,7 @@ class StableStates {
       };
       const auto result = energy_model::minimise_lbfgs(
           objective, angles,
-          {.gradient_tolerance = 1e-6, .max_evaluations = 600, .remembered_steps = 20});
+          {.gradient_tolerance = 1e-6, .max_evaluations = 600, .stored_steps = 20});
       if (!angles.allFinite() || result.status == energy_model::SolveStatus::failed) {
         return std::nullopt;
       }

@@ -13,7 +13,7 @@
 namespace dlo::test {
 
 /// Returns an initial guess of unit length along a line from corner to corner.
-inline energy_model::Equilibrium start_along(const std::vector<Eigen::Vector3d>& corners) {
+inline energy_model::Equilibrium start_along_polyline(const std::vector<Eigen::Vector3d>& corners) {
   std::vector<double> at = {0};
   for (std::size_t i = 1; i < corners.size(); ++i) {
     at.push_back(at.back() + (corners[i] - corners[i - 1]).norm());
@@ -41,16 +41,16 @@ inline energy_model::Equilibrium start_along(const std::vector<Eigen::Vector3d>&
 
 /// Returns a weightless rod whose end is drawn down beyond a peg below it.
 /// @param aside  part of the load along the peg's axis, over that along -y
-inline energy_model::Problem drawn_over_peg(double radius, double tension, double aside = 0) {
+inline energy_model::Problem rod_pulled_over_peg(double radius, double tension, double aside = 0) {
   energy_model::Problem problem = heavy_cantilever(0, 0);
   problem.loads = {{1, tension * Eigen::Vector3d(0, -1, aside).normalized()}};
   problem.obstacles = {{obstacle::Body::cylinder({0.4, -radius, 0}, {0, 0, 1}, radius)}};
   return problem;
 }
 
-/// Returns an initial guess for drawn_over_peg() that passes over the peg.
+/// Returns an initial guess for rod_pulled_over_peg() that passes over the peg.
 inline energy_model::Equilibrium start_over_peg(double radius) {
-  return start_along({{0, 0, 0}, {0.4 + radius, 0, 0}, {0.4 + radius, radius - 0.6, 0}});
+  return start_along_polyline({{0, 0, 0}, {0.4 + radius, 0, 0}, {0.4 + radius, radius - 0.6, 0}});
 }
 
 }  // namespace dlo::test

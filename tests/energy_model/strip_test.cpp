@@ -82,7 +82,7 @@ TEST_P(BothModels, EqualStiffnessesAreARoundRod) {
     const Problem& problem = problems[i];
     const Equilibrium two = solved(problem);
     const Equilibrium one = solved(round_rod(problem, 1));
-    EXPECT_LT(test::gap_between(two, one), 1e-9);
+    EXPECT_LT(test::largest_point_distance(two, one), 1e-9);
     EXPECT_NEAR(two.energy.bending, one.energy.bending, 1e-9);
     EXPECT_NEAR(two.energy.total(), one.energy.total(), 1e-9);
     for (std::size_t g = 0; g < problem.grips.size(); ++g) {
@@ -111,7 +111,7 @@ TEST_P(BothModels, InAPlaneIsTheRoundRodOfItsStiffnessThere) {
       plain.sections[0].bending_stiffness = about_d2 ? 1.2 : 4;
       plain.sections[0].bending_stiffness_2.reset();
       const Equilibrium two = solved(problem);
-      EXPECT_LT(test::gap_between(two, solved(plain)), 1e-9);
+      EXPECT_LT(test::largest_point_distance(two, solved(plain)), 1e-9);
       const Samples samples = test::sample_at(two, at);
       const Vector3d d1 = Eigen::AngleAxisd(2 * pi * turns, Vector3d::UnitX()) * Vector3d::UnitY();
       EXPECT_LT((samples.d1.col(0) - d1).norm(), 1e-9);
@@ -192,8 +192,8 @@ TEST(Strip, ModelsAgreeInSpace) {
     problem.weight_per_length *= 0.1;
     SCOPED_TRACE(number);
     const Equilibrium one = test::converged(solve_energy(problem));
-    const Equilibrium other = test::usable(solve_exact(problem, {.start = &one}));
-    EXPECT_LT(test::gap_between(one, other), 1e-8);
+    const Equilibrium other = test::require_usable(solve_exact(problem, {.start = &one}));
+    EXPECT_LT(test::largest_point_distance(one, other), 1e-8);
     EXPECT_NEAR(one.energy.total(), other.energy.total(), 1e-8);
     EXPECT_NEAR(one.energy.twisting, other.energy.twisting, 1e-8);
     ++same;
@@ -209,7 +209,7 @@ TEST(Strip, WithoutClampsLiesOnItsSoftSide) {
     problem.grips = {{0, {0, 0, 0}, std::nullopt, std::nullopt},
                      {1, {0.9, 0, 0}, std::nullopt, std::nullopt}};
     problem.weight_per_length = {0, -3, 0};
-    const Equilibrium result = test::usable(solve_energy(problem));
+    const Equilibrium result = test::require_usable(solve_energy(problem));
     const Equilibrium round = solve_energy(round_rod(problem, std::min(1.0, about_d2)));
     EXPECT_NEAR(result.energy.total(), round.energy.total(), 1e-9);
   }

@@ -66,8 +66,8 @@ TEST(Surface, ARodThatBeginsToLieStaysThere) {
   for (const Surface& surface : surfaces()) {
     for (const RodSection& section : sections()) {
       RodState state = lying(surface, section, random_state(random));
-      const RodPiece piece{section, {}, 0, 0.5, &surface};
-      ASSERT_TRUE(follow_rod(piece, 1e-13, state));
+      const RodElement element{section, {}, 0, 0.5, &surface};
+      ASSERT_TRUE(integrate_rod(element, 1e-13, state));
       EXPECT_LT(lying_conditions(surface, section, state).values.norm(), 1e-9);
       EXPECT_NEAR(surface.gap(state.r).value, 0, 1e-10);
     }
@@ -81,16 +81,16 @@ TEST(Surface, LinearisedEquationsAreThoseOfTheRod) {
   for (const Surface& surface : surfaces()) {
     for (const RodSection& section : sections()) {
       const RodState begin = lying(surface, section, random_state(random));
-      const RodPiece piece{section, {}, 0, 0.3, &surface};
+      const RodElement element{section, {}, 0, 0.3, &surface};
       RodVariation change = RodVariation::Identity(12, 12);
       RodState end = begin;
-      ASSERT_TRUE(follow_rod(piece, 1e-12, end, &change));
+      ASSERT_TRUE(integrate_rod(element, 1e-12, end, &change));
       for (Eigen::Index k = 0; k < 12; ++k) {
         const Eigen::Matrix<double, 12, 1> step = h * Eigen::Matrix<double, 12, 1>::Unit(k);
         RodState ahead = moved(begin, step);
         RodState behind = moved(begin, -step);
-        ASSERT_TRUE(follow_rod(piece, 1e-13, ahead));
-        ASSERT_TRUE(follow_rod(piece, 1e-13, behind));
+        ASSERT_TRUE(integrate_rod(element, 1e-13, ahead));
+        ASSERT_TRUE(integrate_rod(element, 1e-13, behind));
         const Eigen::Vector3d r = (ahead.r - behind.r) / (2 * h);
         const Eigen::Vector3d m = (ahead.m - behind.m) / (2 * h);
         const Eigen::Vector3d n = (ahead.n - behind.n) / (2 * h);

@@ -59,8 +59,8 @@ TEST(TrustRegionStep, IsTheLowestWithinTheRadius) {
         // mu is known to rounding if the force along the smallest eigenvector is large enough.
         // Otherwise it is known to the hundredth at which the search for mu ends.
         const double rounding = 1e-9 * (1 + std::abs(wanted));
-        const bool told = std::abs(pull[0]) > 2e-2 * high * z.norm();
-        const double unknown = told ? 0 : 1e-2 * high;
+        const bool is_determined = std::abs(pull[0]) > 2e-2 * high * z.norm();
+        const double unknown = is_determined ? 0 : 1e-2 * high;
         EXPECT_GE(found, wanted - rounding);
         EXPECT_LE(found, wanted + rounding + unknown * z.squaredNorm() / 2)
             << smallest << ' ' << length << ' ' << pulled_along_it;
@@ -81,7 +81,7 @@ TEST(TrustRegionStep, WithoutAGradientOnlyNegativeCurvatureLeadsOn) {
     ReducedHessian free;
     free.compute(hessian, Eigen::MatrixXd(0, n));
     const std::optional<Eigen::VectorXd> step = trust_region_step(free, tiny, region);
-    ASSERT_EQ(step.has_value(), smallest < -neutral) << smallest;
+    ASSERT_EQ(step.has_value(), smallest < -zero_eigenvalue_limit) << smallest;
     if (!step) continue;
     EXPECT_NEAR(step->norm(), radius, 0.26 * radius);
     EXPECT_LT(tiny.dot(*step) + step->dot(hessian * *step) / 2,

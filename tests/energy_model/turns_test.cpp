@@ -222,7 +222,7 @@ Problem curved_rod(std::mt19937& random) {
 
 /// Returns the prescribed turns minus the twist and the writhe of the shape; odd if the shape
 /// belongs to the other homotopy class.
-double lacking(const Problem& problem, const Equilibrium& rod) {
+double missing_turns_of(const Problem& problem, const Equilibrium& rod) {
   const double held = held_turns(problem, problem.grips[0], problem.grips[1]).value();
   return held - rod.twists.at(0).angle / (2 * pi) - writhe(rod.sample, 0, 1)->value.value();
 }
@@ -233,7 +233,7 @@ TEST(Turns, OfACurvedRodAreOfTheClassThatItsClampsHold) {
     const Problem problem = curved_rod(random);
     const Equilibrium rod = solve_energy(problem);
     ASSERT_TRUE(succeeded(rod.status)) << i << ": " << rod.message;
-    EXPECT_NEAR(std::remainder(lacking(problem, rod), 2), 0, 1e-5) << i;
+    EXPECT_NEAR(std::remainder(missing_turns_of(problem, rod), 2), 0, 1e-5) << i;
   }
 }
 
@@ -246,7 +246,7 @@ TEST(Turns, OfACurvedRodAreKeptByAHigherShape) {
     if (i != 2 && i != 26) continue;
     const Equilibrium rod = solve_energy(problem);
     ASSERT_TRUE(succeeded(rod.status)) << i << ": " << rod.message;
-    EXPECT_NEAR(lacking(problem, rod), 0, 1e-5) << i;
+    EXPECT_NEAR(missing_turns_of(problem, rod), 0, 1e-5) << i;
   }
 }
 
@@ -260,7 +260,7 @@ TEST(Turns, OfAHelixChangeByOneWithTheClamps) {
     problem.grips[1].frame->roll = 2 * pi * turns;
     const Equilibrium rod = solve_energy(problem);
     ASSERT_TRUE(succeeded(rod.status)) << rod.message;
-    EXPECT_NEAR(lacking(problem, rod), 0, 1e-5) << turns;
+    EXPECT_NEAR(missing_turns_of(problem, rod), 0, 1e-5) << turns;
   }
 }
 

@@ -33,8 +33,8 @@ MovingRod moving_rod(const Problem& problem) {
   return rod;
 }
 
-Grip framed(double at, const Eigen::Vector3d& position, const Eigen::Vector3d& direction,
-            const Eigen::Vector3d& d1) {
+Grip clamp_with_frame(double at, const Eigen::Vector3d& position, const Eigen::Vector3d& direction,
+                      const Eigen::Vector3d& d1) {
   Grip grip{.at = at, .position = position, .direction = direction};
   grip.frame = FrameHold{.d1 = d1};
   return grip;
@@ -45,13 +45,14 @@ double farthest(const Eigen::Matrix3Xd& a, const Eigen::Matrix3Xd& b) {
 }
 
 /// Turns a clamp about its direction, and holds it.
-GripMotion rolling(const Grip& grip, double angle, double until) {
+GripMotion roll_motion(const Grip& grip, double angle, double until) {
   return moving(grip.position, {}, {}, *grip.direction, smooth_step(0, until, angle));
 }
 
 /// Compares the state of a rod, after a clamp has been rolled and drag has stopped the motion, with
 /// an equilibrium.
-void expect_comes_to(const MovingRod& rod, const Problem& rolled, const char* what) {
+void expect_converges_to_equilibrium(const MovingRod& rod, const Problem& rolled,
+                                     const char* what) {
   const Equilibrium before = solve_energy(rod.problem);
   ASSERT_TRUE(succeeded(before.status)) << what;
   const Dynamics moved = simulate(rod, before.sample, std::vector<double>{2, 30});
@@ -76,8 +77,9 @@ void expect_comes_to(const MovingRod& rod, const Problem& rolled, const char* wh
 
 TEST(TwistMotion, ARolledClampLeavesTheEquilibriumThatItHolds) {
   Problem problem = cable();
-  problem.grips = {framed(0, {0, 0, 0}, Eigen::Vector3d::UnitX(), Eigen::Vector3d::UnitY()),
-                   framed(0.8, {0.6, 0.1, 0}, Eigen::Vector3d::UnitX(), Eigen::Vector3d::UnitY())};
+  problem.grips = {
+      clamp_with_frame(0, {0, 0, 0}, Eigen::Vector3d::UnitX(), Eigen::Vector3d::UnitY()),
+      clamp_with_frame(0.8, {0.6, 0.1, 0}, Eigen::Vector3d::UnitX(), Eigen::Vector3d::UnitY())};
   // A part that yields more to twist than it does to bending.
   Section part;
   part.begin = 0.3;
@@ -90,9 +92,9 @@ TEST(TwistMotion, ARolledClampLeavesTheEquilibriumThatItHolds) {
   rod.inertia.of_sections = {rod.inertia.mass_per_length};
   rod.air_drag = 0.5;
   rod.breaks = {0, 1};
-  rod.motions = {nullptr, rolling(problem.grips[1], 2.8, 1)};
+  rod.motions = {nullptr, roll_motion(problem.grips[1], 2.8, 1)};
   problem.grips[1].frame->roll = 2.8;
-  expect_comes_to(rod, problem, "round");
+  expect_converges_to_equilibrium(rod, problem, "round");
 }
 
 TEST(TwistMotion, AWristTurnsACurvedWire) {
@@ -100,13 +102,14 @@ TEST(TwistMotion, AWristTurnsACurvedWire) {
     Problem problem = cable();
     problem.natural_strains = {{1, 2, 0.5}, {0.4, 0, 0}};
     if (flat) problem.bending_stiffness_2 = 0.02;
-    problem.grips = {framed(0, {0, 0, 0}, Eigen::Vector3d::UnitX(), Eigen::Vector3d::UnitY())};
+    problem.grips = {
+        clamp_with_frame(0, {0, 0, 0}, Eigen::Vector3d::UnitX(), Eigen::Vector3d::UnitY())};
     MovingRod rod = moving_rod(problem);
     rod.air_drag = 0.5;
     rod.breaks = {0, 1};
-    rod.motions = {rolling(problem.grips[0], 1.2, 1)};
+    rod.motions = {roll_motion(problem.grips[0], 1.2, 1)};
     problem.grips[0].frame->roll = 1.2;
-    expect_comes_to(rod, problem, flat ? "flat" : "round");
+    expect_converges_to_equilibrium(rod, problem, flat ? "flat" : "round");
   }
 }
 
@@ -119,8 +122,8 @@ MovingRod straightened_wire() {
   problem.bending_stiffness = 1;
   problem.torsional_stiffness = 0.75;
   problem.natural_strains = {{2, 0, 0}};
-  problem.grips = {
-      framed(0, {0, 0, 0}, turn * Eigen::Vector3d::UnitX(), turn * Eigen::Vector3d::UnitZ())};
+  problem.grips = {clamp_with_frame(0, {0, 0, 0}, turn * Eigen::Vector3d::UnitX(),
+                                    turn * Eigen::Vector3d::UnitZ())};
   MovingRod rod = moving_rod(problem);
   rod.inertia.mass_per_length = 1;
   rod.material_damping = 0.002;
@@ -153,12 +156,13 @@ TEST(TwistMotion, AStraightenedWireCurlsAsAPolygon) {
 TEST(TwistMotion, TorqueOfASlackRodIsThatOfItsTurns) {
   Problem problem = cable();
   problem.weight_per_length.setZero();
-  problem.grips = {framed(0, {0, 0, 0}, Eigen::Vector3d::UnitX(), Eigen::Vector3d::UnitY()),
-                   framed(0.8, {0.799, 0, 0}, Eigen::Vector3d::UnitX(), Eigen::Vector3d::UnitY())};
+  problem.grips = {
+      clamp_with_frame(0, {0, 0, 0}, Eigen::Vector3d::UnitX(), Eigen::Vector3d::UnitY()),
+      clamp_with_frame(0.8, {0.799, 0, 0}, Eigen::Vector3d::UnitX(), Eigen::Vector3d::UnitY())};
   MovingRod rod = moving_rod(problem);
   rod.breaks = {0, 1};
-  rod.motions = {nullptr, rolling(problem.grips[1], 1, 1)};
-  const Equilibrium rest = test::usable(solve_energy(problem));
+  rod.motions = {nullptr, roll_motion(problem.grips[1], 1, 1)};
+  const Equilibrium rest = test::require_usable(solve_energy(problem));
   const Dynamics moved =
       test::converged(simulate(rod, rest.sample, std::vector<double>{0.25, 0.5, 1}));
   for (const MovingFrame& frame : moved.frames) {

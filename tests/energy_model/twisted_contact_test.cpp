@@ -35,7 +35,7 @@ Problem with_floor_at(Problem problem, double height) {
 }
 
 Equilibrium solved_touching(const Problem& problem) {
-  Equilibrium result = test::usable(solve_energy(problem));
+  Equilibrium result = test::require_usable(solve_energy(problem));
   EXPECT_FALSE(result.contacts.empty());
   EXPECT_LE(result.penetration, allowed_penetration * problem.length);
   test::expect_only_pushed(problem, result);
@@ -96,7 +96,7 @@ TEST(TwistedContact, PolygonsOfMoreSegmentsComeNearer) {
   double before = 1;
   for (const Eigen::Index segments : {32, 64, 128}) {
     const test::PolygonOfRod polygon(problem, rod, segments);
-    const PolygonResult rest = test::usable(polygon.at_rest());
+    const PolygonResult rest = test::require_usable(polygon.at_rest());
     const double moved = (rest.points - polygon.points).colwise().norm().maxCoeff();
     EXPECT_LT(moved, before / 2);
     before = moved;
@@ -107,7 +107,7 @@ TEST(TwistedContact, PolygonsOfMoreSegmentsComeNearer) {
 TEST(TwistedContact, WhatTouchesOnlyOnceItIsTwistedIsFound) {
   // Without twist the rod hangs in its plane; the wall is next to it.
   Problem problem = framed_rod(5, 6);
-  const Equilibrium free = test::usable(solve_energy(problem));
+  const Equilibrium free = test::require_usable(solve_energy(problem));
   const auto s = equal_arc_lengths(1, 101);
   const Eigen::VectorXd z = free.sample(s).points.row(2);
   const double side = z.maxCoeff() > -z.minCoeff() ? 1 : -1;
@@ -123,7 +123,7 @@ TEST(TwistedContact, IsFollowedWhileTheFloorRisesAndTheClampTurns) {
   ASSERT_TRUE(succeeded(solver.solve(with_floor_at(framed_rod(60, 1), -0.15)).status));
   for (int i = 1; i <= 5; ++i) {
     const Problem problem = with_floor_at(framed_rod(60, 1 + 0.1 * i), -0.15 + 0.005 * i);
-    const Equilibrium followed = test::usable(solver.follow(problem));
+    const Equilibrium followed = test::require_usable(solver.follow(problem));
     EXPECT_NEAR(followed.energy.total(), solved_touching(problem).energy.total(), 1e-8);
   }
   EXPECT_TRUE(solver.followed());
@@ -132,7 +132,7 @@ TEST(TwistedContact, IsFollowedWhileTheFloorRisesAndTheClampTurns) {
 TEST(TwistedContact, StartedFromItsOwnShapeItIsConfirmed) {
   const Problem problem = with_floor_at(framed_rod(60, 2), -0.15);
   const Equilibrium rod = solved_touching(problem);
-  const Equilibrium again = test::usable(solve_energy(problem, {.start = &rod}));
+  const Equilibrium again = test::require_usable(solve_energy(problem, {.start = &rod}));
   EXPECT_NEAR(again.energy.total(), rod.energy.total(), 1e-9);
   EXPECT_LT(again.evaluations, rod.evaluations);
 }

@@ -57,7 +57,7 @@ std::vector<double> turns(const Samples& samples) {
 TEST(TwistedMaterial, IsWhereBothClampsHoldItWhateverTheTwist) {
   for (const double roll : {0.0, 1.0, -2.5, 2 * pi, 9.0}) {
     const Problem problem = rolled_section(roll);
-    const Equilibrium found = test::usable(solve_energy(problem));
+    const Equilibrium found = test::require_usable(solve_energy(problem));
     const Samples samples = found.sample(equal_arc_lengths(1, 21));
     expect_unit_and_across(samples);
     // Within the allowed error of the end's frame.
@@ -71,7 +71,7 @@ TEST(TwistedMaterial, TurnsEvenlyAndBySectionsAsTheirTorsionalStiffnessesSay) {
   for (const bool has_section : {false, true}) {
     Problem problem = rolled_section(4);
     if (has_section) problem.sections = {{0.25, 0.5, 1, 2.1, problem.weight_per_length}};
-    const Equilibrium found = test::usable(solve_energy(problem));
+    const Equilibrium found = test::require_usable(solve_energy(problem));
     const std::vector<double> angles = turns(found.sample(equal_arc_lengths(1, steps + 1)));
     double sum = 0;
     for (Eigen::Index i = 0; i < steps; ++i) {
@@ -91,7 +91,7 @@ TEST(TwistedMaterial, GoesOnWithoutTwistBesideWhatIsTwisted) {
   problem.grips[0].at = 0.2;
   problem.grips[1].at = 0.8;
   problem.grips[1].position = problem.grips[0].position + Vector3d(0.4, 0.1, 0.1);
-  const Equilibrium found = test::usable(solve_energy(problem));
+  const Equilibrium found = test::require_usable(solve_energy(problem));
   constexpr Eigen::Index steps = 1000;
   const Samples samples = found.sample(equal_arc_lengths(1, steps + 1));
   expect_unit_and_across(samples);
@@ -114,7 +114,7 @@ TEST(TwistedMaterial, IsThatOfARodWithMaterialDirectors) {
   const Equilibrium b = solve_energy(with_directors, {.start = &a});
   ASSERT_TRUE(succeeded(a.status) && succeeded(b.status)) << a.message << ", " << b.message;
   const std::vector<double> s = equal_arc_lengths(1, 41);
-  ASSERT_LT(test::gap_between(a, b, s), 1e-8);
+  ASSERT_LT(test::largest_point_distance(a, b, s), 1e-8);
   EXPECT_LT((a.sample(s).d1 - b.sample(s).d1).colwise().norm().maxCoeff(), 1e-7);
 }
 

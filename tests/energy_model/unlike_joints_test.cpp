@@ -15,7 +15,7 @@ namespace {
 
 constexpr Eigen::Index n = 15;
 
-Eigen::VectorXd unlike(double stiffness) {
+Eigen::VectorXd varying_stiffnesses(double stiffness) {
   Eigen::VectorXd result(n - 1);
   for (Eigen::Index i = 0; i < n - 1; ++i) {
     result[i] = stiffness * (2 + std::sin(1.7 * static_cast<double>(i)));
@@ -34,12 +34,12 @@ Eigen::VectorXd turns(double size) {
 ChainProblem bent_chain() {
   ChainProblem problem;
   problem.segment_lengths = Eigen::VectorXd::LinSpaced(n, 0.05, 0.09);
-  problem.held_angle = 0.4;
+  problem.first_angle = 0.4;
   problem.node_forces = Eigen::Matrix2Xd::Zero(2, n + 1);
   problem.node_forces.row(1).setConstant(-0.1);
   problem.node_forces(0, n) = 0.2;
   problem.stiffness = 0.2;
-  problem.stiffnesses = unlike(0.2);
+  problem.stiffnesses = varying_stiffnesses(0.2);
   problem.natural_turns = turns(0.5);
   return problem;
 }
@@ -57,7 +57,7 @@ PolygonProblem bent_polygon() {
   problem.natural_turns = chain.natural_turns;
   const double L = chain.segment_lengths[0];
   problem.held = {{0, Eigen::Vector3d::Zero()},
-                  {1, {L * std::cos(chain.held_angle), L * std::sin(chain.held_angle), 0}}};
+                  {1, {L * std::cos(chain.first_angle), L * std::sin(chain.first_angle), 0}}};
   return problem;
 }
 
@@ -111,7 +111,8 @@ TEST(UnlikeJoints, TheStiffPolygonComesToRestWhereTheRigidChainDoes) {
   for (const double stretch : {1e5, 1e6}) {
     PolygonProblem problem = bent_polygon();
     problem.stretch_stiffness = stretch;
-    const PolygonResult polygon = test::usable(solve_polygon(problem, straight_start(problem)));
+    const PolygonResult polygon =
+        test::require_usable(solve_polygon(problem, straight_start(problem)));
     EXPECT_TRUE(polygon.points.row(2).isZero(0));
     const double apart = (polygon.points.topRows<2>() - chain.points).cwiseAbs().maxCoeff();
     // The remaining difference is stretch, about 2 N divided by the stretch stiffness.

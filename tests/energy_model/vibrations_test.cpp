@@ -36,7 +36,7 @@ Grip clamped(double at, const Vector3d& position, const Vector3d& direction) {
 }
 
 Vibrations modes_of(const Problem& problem, int count, std::vector<PointMass> points = {}) {
-  const Equilibrium shape = test::usable(solve_energy(problem));
+  const Equilibrium shape = test::require_usable(solve_energy(problem));
   Inertia inertia;
   inertia.mass_per_length = 1;
   inertia.of_sections.assign(problem.sections.size(), 1);
@@ -212,8 +212,9 @@ VibratingState at_clamp(VibratingState y, const Vector3d& weight, double omega_s
 
 /// Returns a function that is zero at a natural frequency: the determinant of the effects at the
 /// clamp of five movements of the tip.
-double miss_at_clamp(const Vector3d& tip, const Vector3d& tangent, const Vector3d& clamp_direction,
-                     const Vector3d& weight, double omega_squared) {
+double clamp_determinant(const Vector3d& tip, const Vector3d& tangent,
+                         const Vector3d& clamp_direction, const Vector3d& weight,
+                         double omega_squared) {
   const Vector3d across = tangent.unitOrthogonal();
   const Vector3d beside = tangent.cross(across);
   const Vector3d here = clamp_direction.unitOrthogonal();
@@ -236,11 +237,11 @@ TEST(Vibrations, AboutHeavyShapesMeetTheLinearisedEquations) {
     const Vector3d weight(0, -gamma, 0);
     const Vector3d direction = Vector3d(std::cos(0.4), std::sin(0.4), 0);
     const Problem problem = unit_rod(weight, {clamped(0, Vector3d::Zero(), direction)});
-    const Equilibrium shape = test::usable(solve_exact(problem));
+    const Equilibrium shape = test::require_usable(solve_exact(problem));
     const Samples tip = test::sample_at(shape, 1);
     const auto miss = [&](double omega) {
-      return miss_at_clamp(tip.points.col(0), tip.tangents.col(0), direction, weight,
-                           omega * omega);
+      return clamp_determinant(tip.points.col(0), tip.tangents.col(0), direction, weight,
+                               omega * omega);
     };
     const Vibrations found = modes_of(problem, 6);
     double before = 0.5 * found.modes[0].omega();

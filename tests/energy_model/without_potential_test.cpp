@@ -74,16 +74,17 @@ Eigen::Matrix3d frame_at(const TipState& y) {
 /// Returns the tip of a weightless rod that is clamped at the origin with a frame, under a tip load
 /// given in the axes of the tip. The rod is integrated in those axes and then rotated to the
 /// clamp's frame.
-Eigen::Vector3d followed_tip(const TipRod& rod, const Eigen::Matrix3d& clamp,
-                             const Eigen::Vector3d& force, const Eigen::Vector3d& torque) {
+Eigen::Vector3d tip_under_follower_load(const TipRod& rod, const Eigen::Matrix3d& clamp,
+                                        const Eigen::Vector3d& force,
+                                        const Eigen::Vector3d& torque) {
   const TipState y =
       integrated_to_clamp(rod, tip_state(Eigen::Matrix3d::Identity(), torque, force));
   return clamp * frame_at(y).transpose() * -y.head<3>();
 }
 
 /// Returns the tip under loads on the tangent, by Newton's method on the direction of the tip.
-Eigen::Vector3d dragged_tip(const TipRod& rod, const Eigen::Vector3d& direction,
-                            Eigen::Vector3d tangent) {
+Eigen::Vector3d tip_under_drag(const TipRod& rod, const Eigen::Vector3d& direction,
+                               Eigen::Vector3d tangent) {
   const auto reached = [&](const Eigen::Vector3d& t) {
     Eigen::Matrix3d R;
     R << t.unitOrthogonal(), t.cross(t.unitOrthogonal()), t;
@@ -108,7 +109,7 @@ Eigen::Vector3d dragged_tip(const TipRod& rod, const Eigen::Vector3d& direction,
   return -reached(tangent).head<3>();
 }
 
-Eigen::Vector3d place_along(const Equilibrium& shape, double at = 1) {
+Eigen::Vector3d point_at_arc_length(const Equilibrium& shape, double at = 1) {
   return test::point_at(shape, at);
 }
 
@@ -162,7 +163,7 @@ TEST(WithoutPotential, ShootingHasTheDerivativesOfItsEquations) {
       problem.loads.push_back({0, {0.5, 1, 0.5}, {0.3, -0.6, 0.4}, true});
     }
     problem.grips[0].frame = FrameHold{.d1 = Eigen::Vector3d(0.3, 1, 0.4)};
-    const RodSpan span = with_own_axes(problem);
+    const RodSpan span = whole_span_with_axes(problem);
     const RodMesh mesh = make_mesh(span, 0.25);
     RandomNumbers random(7);
     std::vector<RodState> nodes;
@@ -199,11 +200,11 @@ TEST(WithoutPotential, ACoupleAcrossAClampInAnyPlaneRollsTheRodUp) {
   for (const double lambda : {0.8, 2.0}) {
     Problem problem = cantilever_along(direction);
     problem.loads = {{1, {0, 0, 0}, lambda * pi * axis}};
-    const Equilibrium result = test::usable(solve_exact(problem));
+    const Equilibrium result = test::require_usable(solve_exact(problem));
     const double angle = lambda * pi;
     const Eigen::Vector3d expected =
         std::sin(angle) / angle * direction + (1 - std::cos(angle)) / angle * axis.cross(direction);
-    EXPECT_LT((place_along(result) - expected).norm(), 1e-11);
+    EXPECT_LT((point_at_arc_length(result) - expected).norm(), 1e-11);
     // A couple that follows the section is equal to this dead couple, because its axis does not
     // rotate.
     problem.loads = {{1, {0, 0, 0}, {0, angle, 0}, true}};
@@ -212,7 +213,7 @@ TEST(WithoutPotential, ACoupleAcrossAClampInAnyPlaneRollsTheRodUp) {
     const Equilibrium follows = solve_exact(problem);
     // d2 = t x d1 = t x (axis x t) = axis
     expect_balance_alone(follows);
-    EXPECT_LT((place_along(follows) - expected).norm(), 1e-10);
+    EXPECT_LT((point_at_arc_length(follows) - expected).norm(), 1e-10);
     EXPECT_LT((follows.grips[0].torque + angle * axis).norm(), 1e-9);
   }
 }
@@ -227,7 +228,7 @@ TEST(WithoutPotential, AnObliqueCoupleWindsTheRodIntoAHelix) {
   problem.loads = {{0.35, {0, 0, 0}, first}, {1, {0, 0, 0}, last}};
   const Equilibrium result = solve_exact(problem);
   expect_balance_alone(result);
-  const auto wound = [](const Eigen::Vector3d& m, double s) {
+  const auto rotated_along = [](const Eigen::Vector3d& m, double s) {
     return Eigen::AngleAxisd(s * m.norm(), m.normalized()).toRotationMatrix();
   };
   // int of the rotation about e: s e e^T + sin/|m| (1 - e e^T) + (1 - cos)/|m| e x
@@ -240,9 +241,9 @@ TEST(WithoutPotential, AnObliqueCoupleWindsTheRodIntoAHelix) {
   };
   const Eigen::Vector3d m = first + last;
   const Eigen::Vector3d middle = integral(m, 0.35, direction);
-  const Eigen::Vector3d t = wound(m, 0.35) * direction;
-  EXPECT_LT((place_along(result, 0.35) - middle).norm(), 1e-10);
-  EXPECT_LT((place_along(result) - middle - integral(last, 0.65, t)).norm(), 1e-10);
+  const Eigen::Vector3d t = rotated_along(m, 0.35) * direction;
+  EXPECT_LT((point_at_arc_length(result, 0.35) - middle).norm(), 1e-10);
+  EXPECT_LT((point_at_arc_length(result) - middle - integral(last, 0.65, t)).norm(), 1e-10);
   EXPECT_LT((result.grips[0].torque + m).norm(), 1e-9);
 }
 
@@ -260,11 +261,13 @@ TEST(WithoutPotential, LoadsThatFollowInSpaceTwistAndBendEveryRod) {
     expect_balance_alone(result);
     const Eigen::Matrix3d clamp = rolled(frame_along(direction, Eigen::Vector3d(1, 0.1, 0.3)), 0.4);
     const TipRod rod{{1, second, 0.6}, Eigen::Vector3d::Zero(), {}};
-    EXPECT_LT((place_along(result) - followed_tip(rod, clamp, force, torque)).norm(), 1e-9);
+    EXPECT_LT(
+        (point_at_arc_length(result) - tip_under_follower_load(rod, clamp, force, torque)).norm(),
+        1e-9);
     // The result is found again from itself as the initial guess, with fewer evaluations.
     const Equilibrium again = solve_exact(problem, {.start = &result});
     expect_balance_alone(again);
-    EXPECT_LT((place_along(again) - place_along(result)).norm(), 1e-9);
+    EXPECT_LT((point_at_arc_length(again) - point_at_arc_length(result)).norm(), 1e-9);
     EXPECT_LT(again.evaluations, result.evaluations);
   }
 }
@@ -281,8 +284,8 @@ TEST(WithoutPotential, DragAlongAndAcrossWithWeightIsThatOfAnIntegrationFromTheT
     expect_balance_alone(result);
     const TipRod rod{
         {1, 1, 1}, {0, -4, 0}, [&](const Eigen::Vector3d& t) { return drag.force(t); }};
-    const Eigen::Vector3d expected = dragged_tip(rod, direction, tip_tangent_of(result));
-    EXPECT_LT((place_along(result) - expected).norm(), 1e-9);
+    const Eigen::Vector3d expected = tip_under_drag(rod, direction, tip_tangent_of(result));
+    EXPECT_LT((point_at_arc_length(result) - expected).norm(), 1e-9);
   }
 }
 
@@ -296,8 +299,8 @@ TEST(WithoutPotential, DirectorsStayWhereThePlaneWithAllLoadsSays) {
   expect_balance_alone(result);
   const TipRod rod{
       {3, 3, 3}, {0, 0, 0}, [&](const Eigen::Vector3d& t) { return problem.drag->force(t); }};
-  const Eigen::Vector3d expected = dragged_tip(rod, {1, 0, 0}, tip_tangent_of(result));
-  EXPECT_LT((place_along(result) - expected).norm(), 1e-9);
+  const Eigen::Vector3d expected = tip_under_drag(rod, {1, 0, 0}, tip_tangent_of(result));
+  EXPECT_LT((point_at_arc_length(result) - expected).norm(), 1e-9);
 }
 
 TEST(WithoutPotential, ALineOnPinsInACurrentBalances) {
@@ -315,18 +318,22 @@ TEST(WithoutPotential, ALineOnPinsInACurrentBalances) {
     sum += weight / 1200 * problem.drag->force(t.col(i));
   }
   EXPECT_LT((sum + result.grips[0].force + result.grips[1].force).norm(), 1e-8);
-  EXPECT_GT(place_along(result, 0.5).z(), 0.05);
-  EXPECT_LT((place_along(result) - Eigen::Vector3d(0.8, 0, 0)).norm(), 1e-9);
+  EXPECT_GT(point_at_arc_length(result, 0.5).z(), 0.05);
+  EXPECT_LT((point_at_arc_length(result) - Eigen::Vector3d(0.8, 0, 0)).norm(), 1e-9);
 }
 
 TEST(WithoutPotential, DragThatIsNothingChangesNothing) {
   const Problem problem = heavy_cantilever(5, 30);
   Problem still = problem;
   still.drag = Drag{{0, 0, 0}, 1, 1};
-  EXPECT_LT((place_along(solve_exact(problem)) - place_along(solve_exact(still))).norm(), 1e-10);
+  EXPECT_LT(
+      (point_at_arc_length(solve_exact(problem)) - point_at_arc_length(solve_exact(still))).norm(),
+      1e-10);
   still.loads = {{1, {0, 0, 0}, {0, 0, 0}, true}};
   still.drag.reset();
-  EXPECT_LT((place_along(solve_exact(problem)) - place_along(solve_exact(still))).norm(), 1e-10);
+  EXPECT_LT(
+      (point_at_arc_length(solve_exact(problem)) - point_at_arc_length(solve_exact(still))).norm(),
+      1e-10);
 }
 
 TEST(WithoutPotential, WhatNeedsAPotentialRefusesThem) {

@@ -44,9 +44,9 @@ Eigen::Matrix3Xd sagging(const Rod& rod, double sag) {
   Eigen::Matrix3Xd shape(3, points);
   for (Eigen::Index i = 0; i < points; ++i) {
     const double t = (static_cast<double>(i) - 0.5) / static_cast<double>(points - 2);
-    const double hump = t * (1 - t);
+    const double bump = t * (1 - t);
     const double chord = height * t * t * (3 - 2 * t);
-    shape.col(i) << 0.9 * t, chord - sag * hump * hump, 1e-6 * hump;
+    shape.col(i) << 0.9 * t, chord - sag * bump * bump, 1e-6 * bump;
   }
   for (const Grip& grip : rod.grips) {
     shape.middleCols(grip.first_point, grip.targets.cols()) = grip.targets;
@@ -64,9 +64,9 @@ FloorStart over_floor(Eigen::Index points, double height = 0.2) {
     const double sag = (low + high) / 2;
     start.points = sagging(start.rod, sag);
     const auto inner = points - 1;
-    const double long_now =
+    const double current_length =
         (start.points.rightCols(inner) - start.points.leftCols(inner)).colwise().norm().sum();
-    (long_now < start.rod.length() ? low : high) = sag;
+    (current_length < start.rod.length() ? low : high) = sag;
   }
   return start;
 }

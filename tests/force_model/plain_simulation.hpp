@@ -71,7 +71,7 @@ class PlainSimulation {
   void choose_step() {
     modes_.fastest = mode_bounds(rod_, points_).fastest;
     rounding_ = 1024 * std::numeric_limits<double>::epsilon() * points_.cwiseAbs().maxCoeff();
-    if (block_open_) {
+    if (has_block_start_) {
       block_forces_ -= forces_;
       block_points_ = points_ - block_points_;
       const double change = block_forces_.cwiseProduct(block_points_).sum();
@@ -86,7 +86,7 @@ class PlainSimulation {
                                 modes_.fastest);
     block_points_ = points_;
     block_forces_ = forces_;
-    block_open_ = true;
+    has_block_start_ = true;
     if (!options_.policy.automatic) return;
     const force_model::HeavyBall chosen = heavy_ball(modes_);
     options_.c_F = chosen.c_F;
@@ -135,7 +135,7 @@ class PlainSimulation {
   double point_change_ = 0;
   double mode_rounding_ = 0;
   double rounding_ = 0;
-  bool block_open_ = false;
+  bool has_block_start_ = false;
 };
 
 }  // namespace dlo::test

@@ -18,8 +18,8 @@ inline Eigen::Matrix3Xd random_polygon(unsigned seed, Eigen::Index segments, dou
   points.col(0).setZero();
   Eigen::Vector3d direction = Eigen::Vector3d::UnitX();
   for (Eigen::Index i = 0; i < segments; ++i) {
-    const Eigen::Vector3d kick(normal(engine), normal(engine), normal(engine));
-    direction = (direction + 0.5 * kick).normalized();
+    const Eigen::Vector3d perturbation(normal(engine), normal(engine), normal(engine));
+    direction = (direction + 0.5 * perturbation).normalized();
     points.col(i + 1) = points.col(i) + length * (1 + length_spread * uniform(engine)) * direction;
   }
   return points;

@@ -56,8 +56,8 @@ TEST(Solid, DistributesForcesWithinSegmentsByTheLeverRule) {
 
 /// Returns the force and the moment about a point that balance the loads. For a rod at rest with a
 /// single gripper these are the gripper's force and moment.
-GripReaction balancing(const Rod& rod, const Eigen::Matrix3Xd& points,
-                       const Eigen::Vector3d& about) {
+GripReaction reaction_for_balance(const Rod& rod, const Eigen::Matrix3Xd& points,
+                                  const Eigen::Vector3d& about) {
   GripReaction result;
   for (Eigen::Index i = 0; i < points.cols(); ++i) {
     const Eigen::Vector3d load = rod.loads.col(i);
@@ -97,7 +97,7 @@ TEST(GripReaction, BalancesTheLoadsAboutAGripperFarFromTheOriginAndAfterItMoved)
       ASSERT_EQ(simulation.relax({.tolerance = 1e-9}).status, RelaxStatus::at_rest);
       const Eigen::Matrix3Xd points = simulation.points();
       const GripReaction reaction = grip_reactions(simulation.rod(), points).front();
-      const GripReaction expected = balancing(simulation.rod(), points, about);
+      const GripReaction expected = reaction_for_balance(simulation.rod(), points, about);
       EXPECT_GT(expected.torque.norm(), 0.01);  // a force of 0.12 N acts at 0.5 m
       EXPECT_LT((reaction.force - expected.force).norm(), 1e-7);
       EXPECT_LT((reaction.torque - expected.torque).norm(), 1e-7);
@@ -150,9 +150,9 @@ TEST(Rod, RefusesWhatIsOutOfRange) {
   const SteelRod steel;
   const Rod good = steel.rod({BendingLaw::hooke, steel.EI}, 660);
   EXPECT_NO_THROW(check(good));
-  const auto refused = [&](const auto& spoil) {
+  const auto refused = [&](const auto& invalidate) {
     Rod rod = good;
-    spoil(rod);
+    invalidate(rod);
     EXPECT_THROW(check(rod), std::invalid_argument);
   };
   refused([](Rod& rod) { rod.c_c = NAN; });

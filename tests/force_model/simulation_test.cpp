@@ -102,15 +102,15 @@ TEST(CatchUpLoop, ReportsTheRemainderWhenItsStepsAreUsedUp) {
   Simulation simulation(steel_rod(), SteelRod().straight(), options(Stepper::basic, 1e-5));
   EXPECT_EQ(simulation.advance(1000, 3).status, StepStatus::behind);
   EXPECT_EQ(simulation.steps(), 3);
-  EXPECT_EQ(simulation.owed_steps(), 997);
+  EXPECT_EQ(simulation.remaining_steps(), 997);
   const Simulation copy(simulation);
-  EXPECT_EQ(copy.owed_steps(), 997);
+  EXPECT_EQ(copy.remaining_steps(), 997);
   EXPECT_EQ(simulation.advance(3, 1000).status, StepStatus::good);
   EXPECT_EQ(simulation.steps(), 1003);
-  EXPECT_EQ(simulation.owed_steps(), 0);
+  EXPECT_EQ(simulation.remaining_steps(), 0);
   // The status is the same if no step is allowed at all.
   EXPECT_EQ(simulation.advance(2, 0).status, StepStatus::behind);
-  EXPECT_EQ(simulation.owed_steps(), 2);
+  EXPECT_EQ(simulation.remaining_steps(), 2);
 }
 
 TEST(CatchUpLoop, CarriesTheOvershootToTheNextCall) {

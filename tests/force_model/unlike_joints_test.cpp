@@ -20,7 +20,7 @@ namespace dlo::force_model {
 namespace {
 
 /// Stiffnesses that differ by up to a factor of three along the rod.
-Eigen::VectorXd unlike(double stiffness, Eigen::Index joints) {
+Eigen::VectorXd varying_stiffnesses(double stiffness, Eigen::Index joints) {
   Eigen::VectorXd result(joints);
   for (Eigen::Index i = 0; i < joints; ++i) {
     result[i] = stiffness * (2 + std::sin(1.7 * static_cast<double>(i)));
@@ -40,7 +40,7 @@ TEST(UnlikeJoints, ForcesAreTheGradientOfTheEnergyAndBalance) {
   constexpr Eigen::Index n = 15;
   const Eigen::VectorXd rest = Eigen::VectorXd::Constant(n, 0.04);
   for (const bool natural : {false, true}) {
-    Bending bending{BendingLaw::hooke, 0.2, unlike(0.2, n - 1)};
+    Bending bending{BendingLaw::hooke, 0.2, varying_stiffnesses(0.2, n - 1)};
     if (natural) bending.natural_turns = turns(0.6, n - 1);
     Eigen::Matrix3Xd points = random_polygon(5, n, 0.04, 0.1);
     if (natural) points.row(2).setZero();
@@ -71,7 +71,7 @@ Eigen::Matrix3Xd turned_polygon(const Eigen::VectorXd& rest, const Eigen::Vector
 TEST(NaturalTurns, AreThoseOfTheStressFreeShapeWithoutForceAndEnergy) {
   constexpr Eigen::Index n = 12;
   const Eigen::VectorXd rest = Eigen::VectorXd::LinSpaced(n, 0.03, 0.06);
-  const Bending bending{BendingLaw::hooke, 0.2, unlike(0.2, n - 1), turns(1.2, n - 1)};
+  const Bending bending{BendingLaw::hooke, 0.2, varying_stiffnesses(0.2, n - 1), turns(1.2, n - 1)};
   const Eigen::Matrix3Xd points = turned_polygon(rest, bending.natural_turns);
   Eigen::Matrix3Xd forces = Eigen::Matrix3Xd::Zero(3, n + 1);
   add_bending_forces(points, rest, bending, forces);
@@ -122,7 +122,7 @@ TEST(NaturalTurns, StepsAgreeWithPlainForcesOnEveryInstructionSet) {
       Rod rod = random_rod(
           seed, points,
           {BendingLaw::hooke, Stepper::dynamic, GripHold::rigid, Walls::two, Space::plane});
-      rod.bending.stiffnesses = unlike(rod.bending.stiffness, points - 2);
+      rod.bending.stiffnesses = varying_stiffnesses(rod.bending.stiffness, points - 2);
       rod.bending.natural_turns = turns(0.7, points - 2);
       StepOptions options = options_for(Stepper::dynamic, rod);
       options.instruction_set = set;
@@ -145,7 +145,7 @@ TEST(NaturalTurns, StepsAgreeWithPlainForcesOnEveryInstructionSet) {
 TEST(NaturalTurns, TheStiffnessIsTheForcesDerivativeInThePlane) {
   SteelRod steel;
   Rod rod = steel.rod({BendingLaw::hooke, steel.EI}, 660);
-  rod.bending.stiffnesses = unlike(steel.EI, steel.points - 2);
+  rod.bending.stiffnesses = varying_stiffnesses(steel.EI, steel.points - 2);
   rod.bending.natural_turns = turns(0.4, steel.points - 2);
   Simulation simulation(rod, steel.straight(), {});
   ASSERT_EQ(simulation.relax().status, RelaxStatus::at_rest);

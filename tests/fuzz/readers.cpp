@@ -18,7 +18,7 @@ namespace {
 constexpr const char* file = "fuzz.txt";
 constexpr const char* model_file = "fuzz.xml";
 
-void promise(bool kept, const std::string& what) {
+void require_promise(bool kept, const std::string& what) {
   if (!kept) throw std::logic_error("broken promise: " + what);
 }
 
@@ -31,29 +31,30 @@ bool reads(const Read& read, const std::string& start) {
     return true;
   } catch (const compare::InputError& error) {
     const std::string message = error.what();
-    promise(message.starts_with(start), "the error names the file: " + message);
-    promise(std::none_of(message.begin(), message.end(),
-                         [](char c) { return (c >= 0 && c < ' ') || c == '\x7f'; }),
-            "the error is one line without control characters: " + message);
+    require_promise(message.starts_with(start), "the error names the file: " + message);
+    require_promise(std::none_of(message.begin(), message.end(),
+                                 [](char c) { return (c >= 0 && c < ' ') || c == '\x7f'; }),
+                    "the error is one line without control characters: " + message);
     return false;
   }
 }
 
 void promise_shape(const compare::MeasuredShape& shape) {
-  promise(shape.points.cols() >= 2 && shape.points.cols() <= compare::most_shape_points,
-          "number of points");
-  promise(shape.points.allFinite(), "finite points");
+  require_promise(shape.points.cols() >= 2 && shape.points.cols() <= compare::most_shape_points,
+                  "number of points");
+  require_promise(shape.points.allFinite(), "finite points");
   const auto count = static_cast<std::size_t>(shape.points.cols());
-  promise(shape.arc_length.empty() || shape.arc_length.size() == count, "an arc length a point");
-  promise(shape.d1.cols() == 0 || shape.d1.cols() == shape.points.cols(), "a d1 a point");
-  promise(shape.d1.allFinite(), "finite d1");
+  require_promise(shape.arc_length.empty() || shape.arc_length.size() == count,
+                  "an arc length a point");
+  require_promise(shape.d1.cols() == 0 || shape.d1.cols() == shape.points.cols(), "a d1 a point");
+  require_promise(shape.d1.allFinite(), "finite d1");
 }
 
 void promise_scene(const std::string& text, const char* name) {
   (void)reads(
       [&] {
         const compare::Scene scene = compare::parse_scene(text, name);
-        promise(scene.gamma() >= 0 && !scene.grippers.empty(), "a rod that is held");
+        require_promise(scene.gamma() >= 0 && !scene.grippers.empty(), "a rod that is held");
       },
       name);
 }
@@ -66,7 +67,9 @@ void model(const std::string& text) { promise_scene(text, model_file); }
 
 void parameters(const std::string& text) {
   (void)reads(
-      [&] { promise(compare::parse_parameters(text, file).points >= 2, "number of points"); },
+      [&] {
+        require_promise(compare::parse_parameters(text, file).points >= 2, "number of points");
+      },
       file);
 }
 
@@ -76,8 +79,8 @@ void baseline(const std::string& text) {
     return;
   }
   // A baseline that dlo has written must be readable.
-  promise(compare::baseline_text(compare::read_baseline(written, "written")) == written,
-          "a baseline reads as it was written");
+  require_promise(compare::baseline_text(compare::read_baseline(written, "written")) == written,
+                  "a baseline reads as it was written");
 }
 
 void shape(const std::string& text) {
@@ -101,7 +104,7 @@ direction = "0 deg"
   (void)reads(
       [&] {
         const compare::Axis axis = compare::parse_axis(text);
-        promise(axis.count >= 1, "an axis has values");
+        require_promise(axis.count >= 1, "an axis has values");
         for (const std::int64_t index : {std::int64_t{0}, axis.count / 2, axis.count - 1}) {
           (void)scene.with({{axis.field, axis.value(index)}});
         }

@@ -19,12 +19,12 @@ Matrix3d turned() {
 
 std::vector<Body> bodies() {
   return {Body::half_space({0.1, 0.2, 0.3}, {0.3, 1, -0.2}),
-          Body::half_space({0.1, 0.2, 0.3}, {0.3, 1, -0.2}).grown(0.05),
+          Body::half_space({0.1, 0.2, 0.3}, {0.3, 1, -0.2}).enlarged(0.05),
           Body::sphere({0.1, -0.2, 0.1}, 0.3),
           Body::cylinder({0.1, -0.2, 0.1}, {1, 1, 3}, 0.2),
           Body::capsule({0.1, -0.2, 0.1}, {1, 1, 3}, 0.5, 0.2),
           Body::box({0.1, -0.2, 0.1}, turned(), {0.4, 0.6, 0.8}, 0.05),
-          Body::box({0.1, -0.2, 0.1}, turned(), {0.4, 0.6, 0.8}, 0).grown(0.02)};
+          Body::box({0.1, -0.2, 0.1}, turned(), {0.4, 0.6, 0.8}, 0).enlarged(0.02)};
 }
 
 TEST(Body, DistancesAreThoseOfGeometry) {
@@ -99,10 +99,10 @@ TEST(Body, DistancesAreInvariantUnderTransformation) {
   constexpr double unit = 0.5;
   const Vector3d point(0.3, 0.9, -0.8);
   for (const Body& body : bodies()) {
-    const Body seen = body.transformed(origin, turn, unit);
-    EXPECT_NEAR(seen.clearance(turn * (point - origin) / unit), body.clearance(point) / unit,
+    const Body transformed = body.transformed(origin, turn, unit);
+    EXPECT_NEAR(transformed.clearance(turn * (point - origin) / unit), body.clearance(point) / unit,
                 1e-14);
-    EXPECT_NEAR(body.grown(0.1).clearance(point), body.clearance(point) - 0.1, 1e-15);
+    EXPECT_NEAR(body.enlarged(0.1).clearance(point), body.clearance(point) - 0.1, 1e-15);
   }
 }
 
@@ -139,12 +139,12 @@ TEST(Body, RoundedIsWithinItself) {
     const Vector3d point(std::sin(3.1 * k), std::sin(1.7 * k + 1), std::cos(2.3 * k));
     double last = box.clearance(point);
     for (const double share : {0.25, 0.5, 1.0}) {
-      const double now = box.rounded(share).clearance(point);
+      const double now = box.with_rounded_edges(share).clearance(point);
       EXPECT_TRUE(last <= 0 || now >= last - 1e-14);
       last = now;
     }
   }
-  EXPECT_NEAR(box.rounded(1).radius(), 0.2, 1e-15);
+  EXPECT_NEAR(box.with_rounded_edges(1).radius(), 0.2, 1e-15);
 }
 
 TEST(Body, SamplesFollowItsSmallestRadius) {

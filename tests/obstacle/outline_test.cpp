@@ -56,7 +56,7 @@ TEST(Outline, IsTheSurfaceInAPlaneOfSymmetry) {
 
 TEST(Outline, OfAnInfiniteBodyExtendsFar) {
   const Eigen::Vector3d normal = Eigen::Vector3d(-1, 2, 0).normalized();
-  const Body slope = Body::half_space({0.5, 0.1, 7}, normal).grown(0.02);
+  const Body slope = Body::half_space({0.5, 0.1, 7}, normal).enlarged(0.02);
   const Eigen::Matrix2Xd points = seen_along_z(slope);
   Eigen::Index on_edge = 0;
   for (Eigen::Index i = 0; i < points.cols(); ++i) {

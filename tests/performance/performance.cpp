@@ -132,7 +132,7 @@ double slope_against_points() {
   return (n * xy - x * y) / (n * xx - x * x);
 }
 
-struct Promise {
+struct PerformanceRequirement {
   const char* what = "";
   double least = 0;        ///< promised lower limit; 0: none
   double most = INFINITY;  ///< promised upper limit
@@ -142,7 +142,7 @@ struct Promise {
 
 /// The promises for these registers. Ratios to plain Eigen code, which uses two of a register's
 /// numbers at any width, grow with it; promised is what holds for AVX2 and what is wider.
-std::vector<Promise> promises(InstructionSet set) {
+std::vector<PerformanceRequirement> requirements(InstructionSet set) {
   const bool wide = set != InstructionSet::baseline;
   const Work plain_16 = plain_step(16);
   const auto times_faster = [](const Work& plain, const Work& work, double rods) {
@@ -161,15 +161,15 @@ std::vector<Promise> promises(InstructionSet set) {
 }
 
 /// Prints a line for a promise. @return whether it is kept
-bool keep(const Promise& promise) {
+bool check_requirement(const PerformanceRequirement& promise) {
   const double least = promise.least * (1 - promise.allowance);
   const double most = promise.most / (1 - promise.allowance);
   double measured = 0;
   int attempt = 0;
-  bool kept = false;
-  while (!kept && attempt < attempts) {
+  bool in_range = false;
+  while (!in_range && attempt < attempts) {
     measured = promise.measure();
-    kept = measured >= least && measured <= most;
+    in_range = measured >= least && measured <= most;
     ++attempt;
   }
   char promised[64];
@@ -181,10 +181,10 @@ bool keep(const Promise& promise) {
     std::snprintf(promised, sizeof promised, "<= %.3g", promise.most);
   }
   std::printf("  %-48s %8.3g   promised %-11s  %s", promise.what, measured, promised,
-              kept ? "kept" : "BROKEN");
+              in_range ? "kept" : "BROKEN");
   if (attempt > 1) std::printf(" (attempt %d)", attempt);
   std::printf("\n");
-  return kept;
+  return in_range;
 }
 
 }  // namespace
@@ -195,7 +195,8 @@ int main() {
     std::printf("speed on %s; a promise may be missed by %.0f %% (the exponent by 5 %%)\n",
                 to_string(set), 100 * (1 - margin));
     int broken = 0;
-    for (const Promise& promise : promises(set)) broken += keep(promise) ? 0 : 1;
+    for (const PerformanceRequirement& promise : requirements(set))
+      broken += check_requirement(promise) ? 0 : 1;
     return broken == 0 ? 0 : 1;
   } catch (const std::exception& error) {
     std::fprintf(stderr, "%s\n", error.what());

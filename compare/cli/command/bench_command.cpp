@@ -30,7 +30,7 @@ void run(const BenchOptions& options) {
   std::vector<compare::Scene> scenes;
   for (const std::string& path : options.scenes) scenes.push_back(compare::load_scene(path));
   for (const compare::Scene& scene : scenes) {
-    warn_of_polygons(scene);
+    warn_of_neglected_by_polygon(scene);
     warn_of_no_twist(scene, "tracking by the force model");
   }
   const compare::BenchmarkReport report = [&] {
@@ -38,7 +38,7 @@ void run(const BenchOptions& options) {
     return compare::run_benchmark(scenes, benchmark,
                                   [&](const std::string& what) { bar.stage(what); });
   }();
-  for (const std::string& note : report.notes) say("{}", note);
+  for (const std::string& note : report.notes) print_message("{}", note);
   write_output(options.output, benchmark_document(report),
                {{"csv", [&] { return benchmark_csv(report); }}});
   options.plot.draw([&] {
@@ -50,7 +50,7 @@ void run(const BenchOptions& options) {
     }
     return compare::Picture{{fronts}};
   });
-  if (!report.failures.empty()) end_with(ExitStatus::not_converged);
+  if (!report.failures.empty()) exit_with_status(ExitStatus::not_converged);
 }
 
 }  // namespace

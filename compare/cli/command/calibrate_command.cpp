@@ -125,7 +125,7 @@ void run_material(const CalibrateOptions& options, bool format_is_given) {
   const std::vector<compare::MeasuredShape> held_out =
       load_shapes(options.holdouts, options, scenes, shapes.size());
   for (const compare::Scene& scene : scenes) {
-    say_assumptions(scene);
+    print_assumptions(scene);
     warn_of_friction(scene);
   }
   const compare::Calibration found = with_progress("calibrate", [&](const auto& /*unknown*/) {
@@ -180,14 +180,14 @@ void run_motion(const CalibrateOptions& options, bool format_is_given) {
   const compare::Document document = motion_fit_document(found, scene);
   write_calibration(options.output, format_is_given,
                     formats_of(document, {{"toml", [&] { return motion_toml(found, scene); }}}));
-  if (!found.not_identified.empty()) end_with(ExitStatus::not_converged);
+  if (!found.not_identified.empty()) exit_with_status(ExitStatus::not_converged);
 }
 
 void run_force_model(const CalibrateOptions& options, bool points_are_given, bool format_is_given) {
   const std::vector<compare::Scene> scenes = load_all(options.scenes, options.overrides);
   const std::vector<compare::Scene> holdouts = load_all(options.holdouts, options.overrides);
   for (const auto* list : {&scenes, &holdouts}) {
-    for (const compare::Scene& scene : *list) warn_of_polygons(scene);
+    for (const compare::Scene& scene : *list) warn_of_neglected_by_polygon(scene);
   }
   compare::ForceModelFitOptions fit_options;
   if (points_are_given) fit_options.points = scenes.front().force_model.points;
@@ -202,7 +202,7 @@ void run_force_model(const CalibrateOptions& options, bool points_are_given, boo
                     formats_of(document, {{"csv", [&] { return force_model_csv(fit); }},
                                           {"toml", [&] { return force_model_toml(fit); }}}));
   // The default target was not requested by the user.
-  if (!fit.reached() && options.target) end_with(ExitStatus::outside_tolerance);
+  if (!fit.reached() && options.target) exit_with_status(ExitStatus::outside_tolerance);
 }
 
 void prepare(Command& command) {

@@ -35,7 +35,7 @@ struct CheckOptions {
   bool dynamic = false;
   compare::MotionCheckRequest moving;
   DampingOptions damping;
-  ToleranceWords tolerance;
+  ToleranceOptions tolerance;
   bool no_modulus = false;
   bool no_explanation = false;
   ShapeOptions shapes;
@@ -81,7 +81,8 @@ void run(const CheckOptions& options) {
   write_page(options,
              {scene.name, result.passes(), shape_check_document({result, page.unit_hint}).text()},
              picture);
-  if (options.tolerance.allowed && !result.passes()) end_with(ExitStatus::outside_tolerance);
+  if (options.tolerance.allowed && !result.passes())
+    exit_with_status(ExitStatus::outside_tolerance);
 }
 
 void run_motion(const CheckOptions& options) {
@@ -105,7 +106,7 @@ void run_motion(const CheckOptions& options) {
   const auto picture = [&] { return compare::motion_check_picture(result); };
   options.plot.draw(picture);
   write_page(options, {scene.name, result.passes, motion_check_document(result).text()}, picture);
-  if (options.tolerance.allowed && !result.passes) end_with(ExitStatus::outside_tolerance);
+  if (options.tolerance.allowed && !result.passes) exit_with_status(ExitStatus::outside_tolerance);
 }
 
 }  // namespace
@@ -122,7 +123,7 @@ void add_check_command(CLI::App& app) {
       },
       [](Command& command, CheckOptions& o) {
         command.bind("SCENE", o.scene, "--shape", o.shape, "--tolerance", o.tolerance.allowed,
-                     "--measure", o.tolerance.measure, "--min-seen", o.tolerance.min_seen,
+                     "--measure", o.tolerance.measure, "--min-seen", o.tolerance.min_observed_share,
                      "--no-modulus", o.no_modulus, "--no-explanation", o.no_explanation, o.shapes,
                      o.overrides, o.output, "--report", o.report, o.plot, "--motion", o.motion,
                      "--dynamic", o.dynamic, o.damping, "--from", o.moving.from, "--frame-rate",

@@ -7,7 +7,7 @@ namespace dlo::cli {
 
 // Each function adds its command to the application, which runs it when it is chosen. Errors are
 // exceptions; report_exception() turns them into messages and exit statuses. A result outside a
-// tolerance is printed first, then end_with(ExitStatus::outside_tolerance) is called.
+// tolerance is printed first, then exit_with_status(ExitStatus::outside_tolerance) is called.
 void add_init_command(CLI::App& app);
 void add_materials_command(CLI::App& app);
 void add_solve_command(CLI::App& app);

@@ -75,8 +75,8 @@ void run(const CompareOptions& options) {
     ProgressBar bar("compare");
     for (const std::string& path : options.scenes) {
       const compare::Scene& scene = scenes.emplace_back(options.overrides.load(path));
-      say_assumptions(scene);
-      if (options.output.format == "csv") warn_of_polygons(scene);
+      print_assumptions(scene);
+      if (options.output.format == "csv") warn_of_neglected_by_polygon(scene);
       comparisons.push_back(compare::compare(
           scene, solve, plan,
           options.no_modulus ? compare::ModulusSearch::no : compare::ModulusSearch::yes));

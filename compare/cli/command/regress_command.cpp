@@ -33,7 +33,7 @@ void run(const RegressOptions& given) {
   if (!options.growth.empty()) set_growth("--tolerance", options.growth, options.tolerance);
   // An unreadable baseline is reported before minutes of solving.
   const std::vector<compare::BaselineCase> baseline =
-      options.update ? compare::present_baseline(options.baseline)
+      options.update ? compare::load_baseline_if_exists(options.baseline)
                      : compare::load_baseline(options.baseline);
   const compare::RegressRequest request{
       .model = options.model,
@@ -42,7 +42,7 @@ void run(const RegressOptions& given) {
       .solve = options.overrides.solve()};
   std::vector<compare::Scene> scenes;
   for (const std::string& path : options.scenes) {
-    warn_of_polygons(scenes.emplace_back(options.overrides.load(path)));
+    warn_of_neglected_by_polygon(scenes.emplace_back(options.overrides.load(path)));
   }
   const compare::Regression found = with_progress("regress", [&](const auto& progress) {
     return compare::regress(scenes, baseline, request, progress);
@@ -63,10 +63,10 @@ void run(const RegressOptions& given) {
                        {"json", [&] { return json_text(regression_json(found.results, good)); }},
                        {"csv", [&] { return regression_csv(found.results); }}});
   if (options.update) {
-    say("{} {}", options.baseline, solved ? "written" : "left as it was");
+    print_message("{} {}", options.baseline, solved ? "written" : "left as it was");
   }
-  if (!solved) end_with(ExitStatus::not_converged);
-  if (!good) end_with(ExitStatus::outside_tolerance);
+  if (!solved) exit_with_status(ExitStatus::not_converged);
+  if (!good) exit_with_status(ExitStatus::outside_tolerance);
 }
 
 }  // namespace

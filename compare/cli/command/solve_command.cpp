@@ -39,8 +39,8 @@ void warn_of_neglected(const SolveOptions& options, const compare::Solution& sol
                        const compare::Scene& scene) {
   if (options.output.format == "text" || options.output.format == "json") return;
   for (const std::string& what : solution.neglected) {
-    say("{}: model {} neglects the {} that the scene has", scene.file,
-        compare::to_string(solution.model), what);
+    print_message("{}: model {} neglects the {} that the scene has", scene.file,
+                  compare::to_string(solution.model), what);
   }
 }
 
@@ -65,9 +65,10 @@ void require_verified(const compare::Solution& solution, const compare::Scene& s
 
 /// Solves once: by one model, or by the energy model from the points of a file, or by its number in
 /// the list of all equilibria.
-compare::Solution solved_once(const SolveOptions& options, const compare::SolveOptions& solve,
-                              const compare::Scene& scene, compare::Model model,
-                              const std::vector<double>& arc_lengths) {
+compare::Solution requested_solution(const SolveOptions& options,
+                                     const compare::SolveOptions& solve,
+                                     const compare::Scene& scene, compare::Model model,
+                                     const std::vector<double>& arc_lengths) {
   if (options.equilibrium > 0) {
     return numbered_equilibrium(compare::solve_all(scene, solve, arc_lengths), options.equilibrium,
                                 scene);
@@ -77,10 +78,10 @@ compare::Solution solved_once(const SolveOptions& options, const compare::SolveO
 }
 
 /// Returns the solutions to draw, with enough points of a rod for a smooth line.
-std::vector<compare::Solution> drawn_solutions(const SolveOptions& options,
-                                               const compare::SolveOptions& solve,
-                                               const compare::Scene& scene,
-                                               const std::vector<compare::Solution>& solved) {
+std::vector<compare::Solution> solutions_to_draw(const SolveOptions& options,
+                                                 const compare::SolveOptions& solve,
+                                                 const compare::Scene& scene,
+                                                 const std::vector<compare::Solution>& solved) {
   constexpr std::size_t enough = 101;
   const compare::Solution& first = solved.front();
   const bool continuous =
@@ -89,20 +90,20 @@ std::vector<compare::Solution> drawn_solutions(const SolveOptions& options,
   constexpr int samples = 201;
   const std::vector<double> s = compare::equal_arc_lengths(scene.length, samples);
   if (options.all) return compare::solve_all(scene, solve, s).solutions;
-  return {solved_once(options, solve, scene, first.model, s)};
+  return {requested_solution(options, solve, scene, first.model, s)};
 }
 
 void plot(const SolveOptions& options, const compare::SolveOptions& solve,
           const compare::Scene& scene, const std::vector<compare::Solution>& solved) {
   options.plot.draw([&] {
-    return compare::solution_picture(scene, drawn_solutions(options, solve, scene, solved));
+    return compare::solution_picture(scene, solutions_to_draw(options, solve, scene, solved));
   });
 }
 
 void run(const SolveOptions& options) {
   options.plot.require_drawable();
   const compare::Scene scene = options.overrides.load(options.scene);
-  say_assumptions(scene);
+  print_assumptions(scene);
   const compare::Model model = options.model ? *options.model : compare::reference_model(scene);
   constexpr int text_samples = 11;
   int samples = options.samples;
@@ -122,7 +123,7 @@ void run(const SolveOptions& options) {
   if (options.all) {
     all = compare::solve_all(scene, solve, arc_lengths);
   } else {
-    all.solutions.push_back(solved_once(options, solve, scene, model, arc_lengths));
+    all.solutions.push_back(requested_solution(options, solve, scene, model, arc_lengths));
   }
   const compare::Solution& solution = all.solutions.front();
   warn_of_neglected(options, solution, scene);

@@ -36,7 +36,7 @@ struct StabilityOptions {
 
 /// Whether a result is a failure of the command: `auto` and `implicit` must not fail, other
 /// steppers may. A case that is refused is no failure.
-bool fails(const StabilityResult& result) {
+bool is_failure(const StabilityResult& result) {
   const bool may_not =
       result.stepper == compare::Stepper::automatic || result.stepper == compare::Stepper::implicit;
   return may_not && result.outcome != Outcome::pass && result.outcome != Outcome::refused;
@@ -48,7 +48,7 @@ void run_map(StabilityOptions options) {
   options.grid.threads = options.threads;
   const compare::Scene scene =
       options.scene.empty() ? compare::hard_case_scene() : compare::load_scene(options.scene);
-  warn_of_polygons(scene);
+  warn_of_neglected_by_polygon(scene);
   warn_of_no_twist(scene, "the map");
   const compare::StabilityMap map = with_progress("map", [&](const auto& progress) {
     options.grid.progress = progress;
@@ -66,8 +66,8 @@ void run_cases(StabilityOptions options) {
     return compare::stability(options.cases);
   });
   write_output(options.output, hard_cases_document(results));
-  if (std::any_of(results.begin(), results.end(), fails)) {
-    end_with(ExitStatus::outside_tolerance);
+  if (std::any_of(results.begin(), results.end(), is_failure)) {
+    exit_with_status(ExitStatus::outside_tolerance);
   }
 }
 

@@ -38,7 +38,7 @@ struct SweepOptions {
 };
 
 /// Returns the result columns that the picture of a sweep shows.
-std::vector<std::string> drawn_results(compare::SweepModel model) {
+std::vector<std::string> plotted_columns(compare::SweepModel model) {
   if (model == compare::SweepModel::compare || model == compare::SweepModel::compare_chain)
     return {"rms_over_length", "effective_modulus_ratio"};
   return {"tip_x_m", "tip_y_m", "energy_J"};
@@ -60,7 +60,7 @@ void plot(const SweepOptions& options, const compare::Sweep& sweep,
           const std::vector<std::string>& rows) {
   options.plot.draw([&] {
     return compare::sweep_picture(swept_fields(sweep.grid()), sweep.header(), rows,
-                                  drawn_results(options.model));
+                                  plotted_columns(options.model));
   });
 }
 
@@ -79,7 +79,7 @@ compare::RowRange chosen_rows(const std::string& part, std::int64_t rows) {
   return {*index - 1, rows, *count};
 }
 
-compare::Sweep sweep_of(const SweepOptions& options) {
+compare::Sweep make_sweep(const SweepOptions& options) {
   std::vector<compare::Axis> axes;
   axes.reserve(options.vary.size());
   for (const std::string& text : options.vary) axes.push_back(compare::parse_axis(text));
@@ -89,15 +89,15 @@ compare::Sweep sweep_of(const SweepOptions& options) {
 
 /// Reports the properties that a model neglects, for the first or the last scene of the grid that
 /// has any. A scene that cannot be read is reported in its row.
-void warn_of_polygons_in(const compare::Sweep& sweep, compare::SweepModel model) {
+void warn_of_neglected_in_sweep(const compare::Sweep& sweep, compare::SweepModel model) {
   const bool is_rod = model == compare::SweepModel::energy || model == compare::SweepModel::exact;
   for (const std::int64_t row : {std::int64_t{0}, sweep.grid().size() - 1}) {
     try {
       const compare::Scene scene = sweep.scene(row);
       const bool lacks =
           !is_rod && !compare::neglected_by_polygon(scene, scene.force_model).empty();
-      if (lacks) return warn_of_polygons(scene);
-      if (compare::friction_in_reach(scene)) return warn_of_friction(scene);
+      if (lacks) return warn_of_neglected_by_polygon(scene);
+      if (compare::is_friction_in_reach(scene)) return warn_of_friction(scene);
     } catch (const compare::InputError&) {
       continue;
     }
@@ -133,15 +133,15 @@ void write_rows(const SweepOptions& options, const compare::Sweep& sweep,
   if (file) file->finish();
   bar.reset();
   if (without_result > 0) {
-    say("{}: {} of {} scenes have no result; the column status states the reason",
-        file ? options.output : "sweep", without_result, done);
+    print_message("{}: {} of {} scenes have no result; the column status states the reason",
+                  file ? options.output : "sweep", without_result, done);
   }
   plot(options, sweep, drawn);
 }
 
 /// Separates fields from files. One --vary may be followed by several fields; a word with "=" is a
 /// field.
-void sort_words(SweepOptions& options) {
+void separate_fields_from_files(SweepOptions& options) {
   const auto fields = std::stable_partition(
       options.files.begin(), options.files.end(),
       [](const std::string& word) { return word.find('=') == std::string::npos; });
@@ -165,7 +165,7 @@ void require_drawable(const SweepOptions& options) {
 
 void run(const SweepOptions& given) {
   SweepOptions options = given;
-  if (!options.vary.empty()) sort_words(options);
+  if (!options.vary.empty()) separate_fields_from_files(options);
   require_drawable(options);
   if (options.files.size() != 1) {
     throw compare::InputError(
@@ -175,9 +175,9 @@ void run(const SweepOptions& given) {
     throw compare::InputError(
         "sweep: no --vary FIELD=VALUES given (allowed: such as --vary gamma=1,10)");
   }
-  const compare::Sweep sweep = sweep_of(options);
+  const compare::Sweep sweep = make_sweep(options);
   if (options.plot.draws()) compare::require_drawable(swept_fields(sweep.grid()));
-  warn_of_polygons_in(sweep, options.model);
+  warn_of_neglected_in_sweep(sweep, options.model);
   const compare::RowRange rows = chosen_rows(options.part, sweep.grid().size());
   write_rows(options, sweep, rows);
 }

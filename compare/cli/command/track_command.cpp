@@ -45,10 +45,10 @@ void run(const TrackCommand& command) {
   const compare::Scene scene = command.overrides.load(command.scene);
   warn_of_friction(scene);
   compare::TrackRequest request = command.request;
-  if (command.no_force) request.options.force = compare::ForceBeside::absent;
+  if (command.no_force) request.options.force = compare::ForceModelRun::absent;
   if (command.dynamic) request.damping = command.damping.of(command.overrides.calibrated());
   request.options.solve = command.overrides.solve();
-  if (!command.no_force) warn_of_polygons(scene);
+  if (!command.no_force) warn_of_neglected_by_polygon(scene);
   const compare::TrackResult result = with_progress(
       "track", [&](const auto& progress) { return compare::follow(scene, request, progress); });
   const compare::Track& track = result.track;

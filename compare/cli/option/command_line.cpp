@@ -109,13 +109,13 @@ std::string add_range(CLI::Option& option, const Json& range, bool is_integer) {
 void add_share(CLI::Option& option, const Json& most) {
   if (most.is_string()) {
     option.transform(number_check(
-        share_from, [](double share) { return share > 0 && share < 1; },
+        parse_fraction, [](double share) { return share > 0 && share < 1; },
         "a share of the length such as 0.1% or 0.001, > 0, < 1"));
     return;
   }
   const double high = most;
   option.transform(number_check(
-      share_from, [high](double share) { return share >= 0 && share <= high; },
+      parse_fraction, [high](double share) { return share >= 0 && share <= high; },
       fmt::format("a share such as 1% or 0.01, 0 to {:g}", high)));
 }
 
@@ -257,13 +257,13 @@ const Json& option_table(const std::string& name) {
   return tables.emplace(name, json_of(*parsed.get(name))).first->second;
 }
 
-std::vector<std::string> expanded(const std::string& text) {
+std::vector<std::string> expand_option_groups(const std::string& text) {
   std::vector<std::string> words;
   const Json& groups = option_table("groups");
   std::istringstream parts(text);
   for (std::string word; parts >> word;) {
     const std::vector<std::string> more =
-        groups.contains(word) ? expanded(groups.at(word)) : std::vector{word};
+        groups.contains(word) ? expand_option_groups(groups.at(word)) : std::vector{word};
     words.insert(words.end(), more.begin(), more.end());
   }
   return words;
@@ -282,14 +282,14 @@ void require_values(const std::vector<std::string>& words) {
 Command::Command(CLI::App& app, const std::string& name)
     : app_(*app.add_subcommand(name, option_table(name).at("words"))),
       table_(option_table(name)),
-      used_(expanded(table_.value("uses", ""))) {
+      used_(expand_option_groups(table_.value("uses", ""))) {
   app_.group(table_.at("group"));
   app_.footer(table_.at("footer").get<std::string>());
 }
 
 const Json* Command::find(const std::string& name) const {
-  const Json* const own = find_row(table_, name);
-  if (own != nullptr || std::ranges::find(used_, name) == used_.end()) return own;
+  const Json* const entry = find_row(table_, name);
+  if (entry != nullptr || std::ranges::find(used_, name) == used_.end()) return entry;
   return find_row(option_table("common"), name);
 }
 
@@ -320,8 +320,8 @@ CLI::Option* Command::describe(CLI::Option* option, const Json& row, bool is_int
   std::string notes = row.contains("range") ? add_range(*option, row.at("range"), is_integer) : "";
   // Transformations precede all checks; this one does not change the value.
   if (option->get_type_size() > 0) option->transform(CLI::Validator(refuse_empty, ""));
-  if (const std::string usual = option->get_default_str(); !usual.empty()) {
-    notes += fmt::format("{}default: {}", notes.empty() ? "" : "; ", usual);
+  if (const std::string default_value = option->get_default_str(); !default_value.empty()) {
+    notes += fmt::format("{}default: {}", notes.empty() ? "" : "; ", default_value);
   }
   return option->description(notes.empty() ? words : fmt::format("{} [{}]", words, notes));
 }

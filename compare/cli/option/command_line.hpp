@@ -23,7 +23,7 @@ namespace dlo::cli {
 [[nodiscard]] const compare::Json& option_table(const std::string& name);
 
 /// Returns the words of a text of the table; each name of several options is replaced by them.
-[[nodiscard]] std::vector<std::string> expanded(const std::string& text);
+[[nodiscard]] std::vector<std::string> expand_option_groups(const std::string& text);
 
 /// Refuses options that end with "=", because CLI11 would take the next word as their value.
 /// @throws compare::InputError

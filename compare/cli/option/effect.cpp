@@ -15,7 +15,7 @@ namespace {
 
 using Names = std::vector<std::string>;
 
-const std::string law_setting = "law";
+const std::string law_option = "law";
 
 OptionCondition condition_of(const std::string& word) {
   if (word.front() == '!') return {word.substr(1), {}};
@@ -41,13 +41,13 @@ bool is_given(const CLI::App& command, const std::string& name) {
 
 /// Returns the condition in words, such as "with --model chain" or "without --shape"; empty if it
 /// does not hold.
-std::string words_of(const OptionCondition& condition, const CLI::App& command,
-                     const compare::ForceModelSettings* settings) {
+std::string condition_text(const OptionCondition& condition, const CLI::App& command,
+                           const compare::ForceModelSettings* settings) {
   const auto contains = [&](const std::string& value) {
     return std::find(condition.values.begin(), condition.values.end(), value) !=
            condition.values.end();
   };
-  const bool is_law = condition.option == law_setting;
+  const bool is_law = condition.option == law_option;
   if (!is_law && condition.values.empty()) {
     return is_given(command, condition.option) ? "" : "without " + condition.option;
   }
@@ -63,11 +63,11 @@ std::string words_of(const OptionCondition& condition, const CLI::App& command,
 }
 
 /// Returns the reason why the options of a row have no effect; empty if they have one.
-std::string why_no_effect(const IneffectiveOptions& row, const CLI::App& command,
-                          const compare::ForceModelSettings* settings) {
+std::string no_effect_reason(const IneffectiveOptions& row, const CLI::App& command,
+                             const compare::ForceModelSettings* settings) {
   std::string why;
   for (const OptionCondition& condition : row.conditions) {
-    const std::string words = words_of(condition, command, settings);
+    const std::string words = condition_text(condition, command, settings);
     if (words.empty()) return "";
     if (row.options.front() == condition.option) continue;
     why += (why.empty() ? "" : ", ") + words;
@@ -75,10 +75,10 @@ std::string why_no_effect(const IneffectiveOptions& row, const CLI::App& command
   return row.conditions.empty() ? "in dlo " + command.get_name() : why;
 }
 
-bool is_of_scene(const IneffectiveOptions& row) {
+bool depends_on_law(const IneffectiveOptions& row) {
   return std::any_of(
       row.conditions.begin(), row.conditions.end(),
-      [](const OptionCondition& condition) { return condition.option == law_setting; });
+      [](const OptionCondition& condition) { return condition.option == law_option; });
 }
 
 }  // namespace
@@ -88,11 +88,11 @@ std::vector<IneffectiveOptions> ineffective_options(const std::string& table) {
   for (const compare::Json& row :
        option_table(table).value("ineffective", compare::Json::array())) {
     IneffectiveOptions& made = rows.emplace_back(
-        IneffectiveOptions{expanded(row.at("options")),
+        IneffectiveOptions{expand_option_groups(row.at("options")),
                            {},
                            row.at("allowed"),
                            row.value("stated", false) ? NoEffect::stated : NoEffect::refused});
-    for (const std::string& word : expanded(row.value("when", ""))) {
+    for (const std::string& word : expand_option_groups(row.value("when", ""))) {
       made.conditions.push_back(condition_of(word));
     }
   }
@@ -104,13 +104,13 @@ void check_effects(const CLI::App& command, const compare::ForceModelSettings* s
   for (IneffectiveOptions& row : ineffective_options("common")) rows.push_back(std::move(row));
   for (const IneffectiveOptions& row : rows) {
     // A notice is given only after the scene has been read, so that an error remains the only line.
-    const bool at_scene = is_of_scene(row) || row.response == NoEffect::stated;
+    const bool at_scene = depends_on_law(row) || row.response == NoEffect::stated;
     if (at_scene != (settings != nullptr)) continue;
     Names named;
     for (const std::string& option : row.options) {
       if (is_given(command, option)) named.push_back(option);
     }
-    const std::string why = named.empty() ? "" : why_no_effect(row, command, settings);
+    const std::string why = named.empty() ? "" : no_effect_reason(row, command, settings);
     if (why.empty()) continue;
     const bool is_format = named.front() == "--format";
     const std::string what =
@@ -118,7 +118,7 @@ void check_effects(const CLI::App& command, const compare::ForceModelSettings* s
                   : fmt::format("{}: no effect", fmt::join(named, ", "));
     const std::string message = fmt::format("{} {} (allowed: {})", what, why, row.allowed);
     if (row.response == NoEffect::refused) throw compare::InputError(message);
-    say_line(message);
+    print_message_line(message);
   }
 }
 

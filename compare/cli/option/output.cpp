@@ -27,9 +27,9 @@ constexpr const char* standard_output = "standard output";
 std::atomic<RedirectedOutput*> redirected = nullptr;
 
 bool has_long_name(const CLI::Option& option, std::initializer_list<std::string> names) {
-  const std::vector<std::string>& own = option.get_lnames();
-  return std::any_of(names.begin(), names.end(), [&own](const std::string& name) {
-    return std::find(own.begin(), own.end(), name) != own.end();
+  const std::vector<std::string>& long_names = option.get_lnames();
+  return std::any_of(names.begin(), names.end(), [&long_names](const std::string& name) {
+    return std::find(long_names.begin(), long_names.end(), name) != long_names.end();
   });
 }
 
@@ -45,8 +45,8 @@ bool is_written(const CLI::App& command, const CLI::Option& option) {
          command.get_option_no_throw("--update") != nullptr && command.count("--update") > 0;
 }
 
-void refuse_two_outputs(const std::string& option, const std::string& file,
-                        const std::vector<std::string>& others) {
+void require_distinct_outputs(const std::string& option, const std::string& file,
+                              const std::vector<std::string>& others) {
   for (const std::string& other : others) {
     // Files that do not exist yet are compared by the targets of their names.
     const bool same = compare::same_file(file, other) ||
@@ -60,7 +60,8 @@ void refuse_two_outputs(const std::string& option, const std::string& file,
 
 /// Refuses outputs that might be frames of a series. The number of frames, and so the names of all
 /// its files, is unknown before the computation.
-void refuse_among_frames(const std::string& series, const std::vector<std::string>& outputs) {
+void require_no_frame_of_series(const std::string& series,
+                                const std::vector<std::string>& outputs) {
   for (const std::string& file : outputs) {
     if (!compare::is_frame_of_series(file, series)) continue;
     throw compare::InputError(fmt::format(
@@ -71,7 +72,7 @@ void refuse_among_frames(const std::string& series, const std::vector<std::strin
 
 }  // namespace
 
-void end_with(ExitStatus status) { throw CLI::RuntimeError(static_cast<int>(status)); }
+void exit_with_status(ExitStatus status) { throw CLI::RuntimeError(static_cast<int>(status)); }
 
 std::string format_of_file(const std::string& file, const std::vector<std::string>& formats) {
   const std::string extension = std::filesystem::path(file).extension().string();
@@ -140,7 +141,7 @@ void write_standard_error(std::string_view text) {
   }
 }
 
-void say_line(const std::string& message) {
+void print_message_line(const std::string& message) {
   write_standard_error("dlo: " + compare::display(message) + "\n");
 }
 
@@ -182,7 +183,7 @@ void check_outputs(const CLI::App& command) {
       check_output(name, file);
       if (std::filesystem::is_regular_file(file, unknown) ||
           !std::filesystem::exists(file, unknown)) {
-        refuse_two_outputs(name, file, outputs);
+        require_distinct_outputs(name, file, outputs);
       }
       outputs.push_back(file);
       // --update rewrites the baseline that it has read.
@@ -191,7 +192,7 @@ void check_outputs(const CLI::App& command) {
     }
   }
   for (const std::string& file : series) {
-    refuse_among_frames(file, outputs);
+    require_no_frame_of_series(file, outputs);
     compare::declare_output(
         file,
         fmt::format("--paraview {}, which writes frames {}", file, compare::frame_names(file)),

@@ -34,7 +34,7 @@ enum class ExitStatus : int {
 };
 
 /// Ends a command that has printed its result.
-[[noreturn]] void end_with(ExitStatus status);
+[[noreturn]] void exit_with_status(ExitStatus status);
 
 /// Options --format and -o.
 struct OutputOptions {
@@ -73,10 +73,10 @@ void write_standard_output(std::string_view text);
 void close_standard_output();
 
 /// Writes a line to standard error, after "dlo: ". Errors of this write are ignored.
-void say_line(const std::string& message);
+void print_message_line(const std::string& message);
 template <typename... Arguments>
-void say(fmt::format_string<Arguments...> format, Arguments&&... arguments) {
-  say_line(fmt::format(format, std::forward<Arguments>(arguments)...));
+void print_message(fmt::format_string<Arguments...> format, Arguments&&... arguments) {
+  print_message_line(fmt::format(format, std::forward<Arguments>(arguments)...));
 }
 /// Writes a text to standard error unchanged. Errors of this write are ignored.
 void write_standard_error(std::string_view text);

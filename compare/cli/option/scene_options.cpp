@@ -14,21 +14,21 @@
 namespace dlo::cli {
 
 void warn_of_no_twist(const compare::Scene& scene, const std::string& study) {
-  if (!compare::takes_twist(scene, scene.force_model)) return;
-  say("{}: the grippers hold twist, which {} neglects", scene.file, study);
+  if (!compare::models_twist(scene, scene.force_model)) return;
+  print_message("{}: the grippers hold twist, which {} neglects", scene.file, study);
 }
 
-void say_assumptions(const compare::Scene& scene) {
+void print_assumptions(const compare::Scene& scene) {
   if (!scene.model) return;
-  for (const std::string& note : scene.model->notes) say("{}: {}", scene.file, note);
+  for (const std::string& note : scene.model->notes) print_message("{}: {}", scene.file, note);
 }
 
 void warn_of_friction(const compare::Scene& scene) {
-  if (!compare::friction_in_reach(scene)) return;
-  say("{}: an obstacle in reach has friction, which all models neglect", scene.file);
+  if (!compare::is_friction_in_reach(scene)) return;
+  print_message("{}: an obstacle in reach has friction, which all models neglect", scene.file);
 }
 
-void warn_of_polygons(const compare::Scene& scene) {
+void warn_of_neglected_by_polygon(const compare::Scene& scene) {
   warn_of_friction(scene);
   const std::vector<std::string> neglected =
       compare::neglected_by_polygon(scene, scene.force_model);
@@ -36,12 +36,13 @@ void warn_of_polygons(const compare::Scene& scene) {
     return std::find(neglected.begin(), neglected.end(), what) != neglected.end();
   };
   if (neglects("twist")) {
-    say("{}: the grippers hold twist, which models chain and force neglect {}", scene.file,
-        scene.naturally_bent() ? "of an intrinsically curved rod" : "with the law paper");
+    print_message("{}: the grippers hold twist, which models chain and force neglect {}",
+                  scene.file,
+                  scene.naturally_bent() ? "of an intrinsically curved rod" : "with the law paper");
   }
   if (neglects("natural curvature")) {
-    say("{}: the rod is intrinsically curved, which models chain and force neglect {}", scene.file,
-        scene.planar() ? "with the law paper" : "in space");
+    print_message("{}: the rod is intrinsically curved, which models chain and force neglect {}",
+                  scene.file, scene.planar() ? "with the law paper" : "in space");
   }
 }
 
@@ -106,7 +107,7 @@ compare::Scene SceneOptions::load(const std::string& path) const {
       compare::calibrated_scene(compare::load_scene(path, materials()), calibrated());
   apply(scene);
   if (!time_) return scene;
-  if (!compare::motion_of(scene)) {
+  if (!compare::motion_time_span(scene)) {
     throw compare::InputError(
         fmt::format("{}: --time {:g}: nothing moves (allowed: no --time, or a scene with "
                     "[[gripper.pose]] or [[obstacle.pose]])",

@@ -60,14 +60,14 @@ class PlanOptions {
 
 /// Reports on standard error the assumptions that were made to read a scene from a simulator's
 /// model.
-void say_assumptions(const compare::Scene& scene);
+void print_assumptions(const compare::Scene& scene);
 
 /// Reports on standard error that the models neglect the friction of an obstacle in reach.
 void warn_of_friction(const compare::Scene& scene);
 
 /// Reports on standard error the properties of a scene that the models chain and force neglect:
 /// twist between its grippers, natural curvature, friction.
-void warn_of_polygons(const compare::Scene& scene);
+void warn_of_neglected_by_polygon(const compare::Scene& scene);
 
 /// Reports on standard error that a study neglects twist, for a scene whose twist the models chain
 /// and force include.

@@ -17,7 +17,7 @@ namespace {
 double share_of(const std::string& name, const std::string& text, const char* of,
                 std::string_view number) {
   try {
-    const double share = share_from(std::string(number));
+    const double share = parse_fraction(std::string(number));
     if (share > 0 && share < 1) return share;
   } catch (const compare::InputError&) {
     // The error is thrown below, as for a share that is out of range.
@@ -33,7 +33,8 @@ double tolerance_m(const std::string& name, const std::string& text, double leng
   const bool is_share = text.find_first_not_of("0123456789.eE+-%") == std::string::npos;
   double value = 0;
   try {
-    value = is_share ? share_from(text) : compare::parse_quantity(text, compare::Dimension::length);
+    value =
+        is_share ? parse_fraction(text) : compare::parse_quantity(text, compare::Dimension::length);
   } catch (const compare::InputError&) {
     throw compare::InputError(
         fmt::format("{} = {}: neither a share of the length nor a length (allowed: such as 1%, "
@@ -49,7 +50,7 @@ double tolerance_m(const std::string& name, const std::string& text, double leng
 
 }  // namespace
 
-double share_from(const std::string& text) {
+double parse_fraction(const std::string& text) {
   const bool percent = text.ends_with('%');
   const std::string number = percent ? text.substr(0, text.size() - 1) : text;
   return compare::parse_quantity(number, compare::Dimension::number) / (percent ? 100 : 1);
@@ -79,7 +80,7 @@ compare::RodDamping DampingOptions::of(const compare::CalibratedRod& rod) const 
           .quadratic = quadratic.value_or(rod.quadratic_drag.value_or(0))};
 }
 
-compare::ShapeTolerance shape_tolerance(const std::string& name, const ToleranceWords& words,
+compare::ShapeTolerance shape_tolerance(const std::string& name, const ToleranceOptions& words,
                                         double length) {
   if (words.measure != "rms" && words.measure != "max") {
     compare::refuse_choice(words.measure, {"rms", "max"});
@@ -93,8 +94,8 @@ compare::ShapeTolerance shape_tolerance(const std::string& name, const Tolerance
     }
   }
   tolerance.largest = words.measure == "max";
-  tolerance.part = words.min_seen.has_value();
-  if (words.min_seen) tolerance.least_seen_share = *words.min_seen;
+  tolerance.part = words.min_observed_share.has_value();
+  if (words.min_observed_share) tolerance.least_observed_share = *words.min_observed_share;
   return tolerance;
 }
 

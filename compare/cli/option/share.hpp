@@ -12,7 +12,7 @@
 namespace dlo::cli {
 
 /// Reads a share such as "1%" or 0.01. @throws compare::InputError if the text is no number
-[[nodiscard]] double share_from(const std::string& text);
+[[nodiscard]] double parse_fraction(const std::string& text);
 
 /// Returns the fraction of a tolerance such as "5% of deflection"; empty if the text is not a
 /// fraction of the deflection.
@@ -36,19 +36,19 @@ struct DampingOptions {
 };
 
 /// Tolerance of a shape, as text.
-struct ToleranceWords {
+struct ToleranceOptions {
   /// "1%" or 0.01 of the rod's length, "5% of deflection", or a length with a unit; empty: the
   /// default.
   std::optional<std::string> allowed;
   std::string measure = "rms";  ///< or "max"
   /// Smallest allowed fraction of the rod that is observed, for points on a part of the rod, which
   /// alone is judged; empty: the whole rod is judged.
-  std::optional<double> min_seen;
+  std::optional<double> min_observed_share;
 };
 
 /// Reads a tolerance. compare::check() computes one that is relative to the deflection.
 /// @param name  name of the option in messages. @throws compare::InputError
 [[nodiscard]] compare::ShapeTolerance shape_tolerance(const std::string& name,
-                                                      const ToleranceWords& words, double length);
+                                                      const ToleranceOptions& words, double length);
 
 }  // namespace dlo::cli

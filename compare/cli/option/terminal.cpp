@@ -28,9 +28,9 @@ bool is_terminal(int file) {
 
 std::size_t columns_of_terminal(int file) {
   winsize size{};
-  constexpr std::size_t usual = 80;
+  constexpr std::size_t default_width = 80;
   const bool known = !is_redirected() && ::ioctl(file, TIOCGWINSZ, &size) == 0 && size.ws_col > 0;
-  return known ? size.ws_col : usual;
+  return known ? size.ws_col : default_width;
 }
 
 }  // namespace

@@ -46,7 +46,7 @@ std::string summary(const Card& card) {
 }
 
 /// Returns the causes or the problem of a scene; empty if it is right.
-std::string what_is_wrong(const CardScene& scene) {
+std::string cause_or_problem(const CardScene& scene) {
   if (scene.status() != RunStatus::solved) {
     return fmt::format("{}: {}", compare::to_string(scene.status()),
                        compare::display(scene.problem()));
@@ -72,7 +72,7 @@ std::string what_is_wrong(const CardScene& scene) {
 std::vector<std::pair<std::string, std::string>> wrong_scenes(const Card& card) {
   std::vector<std::pair<std::string, std::string>> reasons;
   for (const CardScene& scene : card.scenes) {
-    const std::string wrong = what_is_wrong(scene);
+    const std::string wrong = cause_or_problem(scene);
     if (wrong.empty()) continue;
     const auto known = std::find_if(reasons.begin(), reasons.end(),
                                     [&](const auto& one) { return one.second == wrong; });
@@ -150,8 +150,9 @@ std::string cards_junit(const std::vector<Card>& cards) {
   for (const Card& card : cards) {
     suites.push_back({card.simulator, {}});
     for (const CardScene& scene : card.scenes) {
-      compare::JunitCase one{
-          .group = "dlo.suite." + scene.group, .name = scene.id, .message = what_is_wrong(scene)};
+      compare::JunitCase one{.group = "dlo.suite." + scene.group,
+                             .name = scene.id,
+                             .message = cause_or_problem(scene)};
       for (const compare::SimulatorRun& run : scene.runs) one.seconds += run.seconds;
       if (scene.status() == RunStatus::not_supported) {
         one.outcome = "skipped";
@@ -174,7 +175,7 @@ compare::Figure card_figure(const Card& card) {
   const std::vector<CardGroup> groups = card.groups();
   for (std::size_t i = 0; i < groups.size(); ++i) {
     panel.curves.push_back({.title = groups[i].name,
-                            .look = compare::curve_look(i),
+                            .look = compare::curve_style(i),
                             .x = {card.points.begin(), card.points.end()},
                             .y = groups[i].largest});
   }

@@ -38,7 +38,7 @@ struct SuiteOptions {
 void write_pack(const SuiteOptions& options, const std::string& version,
                 const std::vector<compare::BatteryScene>& scenes) {
   compare::write_pack(options.pack, compare::certified_pack(version, scenes, options.card.threads));
-  say("{} answers in {}", scenes.size(), options.pack);
+  print_message("{} answers in {}", scenes.size(), options.pack);
 }
 
 /// Writes the page of --report.
@@ -59,7 +59,7 @@ void write_cards(const SuiteOptions& options, const std::string& version,
   // An unreadable baseline is reported before minutes of runs.
   std::vector<compare::BaselineCase> baseline;
   if (!options.baseline.empty()) {
-    baseline = options.update ? compare::present_baseline(options.baseline)
+    baseline = options.update ? compare::load_baseline_if_exists(options.baseline)
                               : compare::load_baseline(options.baseline);
   }
   const std::vector<compare::Card> cards = with_progress("suite", [&](const auto& progress) {
@@ -78,14 +78,14 @@ void write_cards(const SuiteOptions& options, const std::string& version,
     return card.total().failed == 0 && card.total().not_judged == 0;
   });
   if (options.baseline.empty()) {
-    if (!complete) end_with(ExitStatus::not_converged);
+    if (!complete) exit_with_status(ExitStatus::not_converged);
     return;
   }
   const compare::Regression found = compare::judge_cards(baseline, cards, options.tolerance);
   if (options.update) {
     if (found.solved()) compare::replace_baseline(options.baseline, baseline, found.cases);
-    say("{} {}", options.baseline, found.solved() ? "written" : "left as it was");
-    if (!found.solved()) end_with(ExitStatus::not_converged);
+    print_message("{} {}", options.baseline, found.solved() ? "written" : "left as it was");
+    if (!found.solved()) exit_with_status(ExitStatus::not_converged);
     return;
   }
   const std::string changes = regression_changes_text(found.results, options.output.file);
@@ -94,8 +94,8 @@ void write_cards(const SuiteOptions& options, const std::string& version,
   } else {
     write_standard_error(changes);
   }
-  if (!complete) end_with(ExitStatus::not_converged);
-  if (!found.passes()) end_with(ExitStatus::outside_tolerance);
+  if (!complete) exit_with_status(ExitStatus::not_converged);
+  if (!found.passes()) exit_with_status(ExitStatus::outside_tolerance);
 }
 
 void run(const SuiteOptions& options) {

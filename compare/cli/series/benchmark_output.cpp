@@ -16,7 +16,7 @@ using compare::BenchmarkRun;
 using compare::SceneBenchmark;
 
 constexpr const char* not_run = "not run";
-constexpr const char* none_within = "no run is within the error";
+constexpr const char* no_run_within_error = "no run is within the error";
 
 Json run_json(const BenchmarkRun& run, const char* kind) {
   const bool steps = run.variant && run.model == compare::Model::force;
@@ -48,7 +48,7 @@ Json answers_json(const std::vector<BenchmarkAnswer>& answers,
     if (answer.best) {
       entry["use"] = name_of(runs[*answer.best]);
     } else {
-      entry["reason"] = compare::has_run(runs) ? none_within : not_run;
+      entry["reason"] = compare::has_run(runs) ? no_run_within_error : not_run;
     }
     result.push_back(std::move(entry));
   }
@@ -75,7 +75,8 @@ compare::Document benchmark_document(const compare::BenchmarkReport& report) {
       if (run) {
         entry[name + "_s"] = scene.runs[*run].time.median_s;
       } else {
-        entry[name + "_reason"] = compare::has_run(scene.runs, model) ? none_within : not_run;
+        entry[name + "_reason"] =
+            compare::has_run(scene.runs, model) ? no_run_within_error : not_run;
       }
     };
     add_time("energy_at_1e-6", scene.energy_at_1e6, compare::Model::energy);

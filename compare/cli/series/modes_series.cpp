@@ -29,7 +29,8 @@ Json mode_json(const SceneMode& mode, const std::vector<double>& s) {
                  {"to_m", mode.rod.end}};
   result["polygon_frequency_Hz"] =
       mode.polygon_omega ? Json(hertz(*mode.polygon_omega)) : Json(nullptr);
-  result["polygon_likeness"] = mode.polygon_omega ? Json(mode.polygon_likeness) : Json(nullptr);
+  result["polygon_likeness"] =
+      mode.polygon_omega ? Json(mode.polygon_kinetic_share) : Json(nullptr);
   result["stepped"] = json_or_null(mode.stepped, [](const auto& stepped) -> Json {
     return {{"frequency_Hz", hertz(stepped.omega)},
             {"damping_ratio", stepped.damping},
@@ -54,8 +55,8 @@ compare::Document modes_document(const compare::SceneModes& modes, const compare
                     return mode_json(mode, s);
                   })}};
   result["tension_N"] = json_or_null(modes.tension);
-  result["no_polygon"] = text_or_null(modes.no_polygon);
-  result["mass_of_steps_kg"] = json_or_null(modes.mass_of_steps);
+  result["no_polygon"] = text_or_null(modes.missing_polygon_reason);
+  result["mass_of_steps_kg"] = json_or_null(modes.effective_point_mass);
   result["physical"] = json_or_null(modes.physical, [](const auto& physical) -> Json {
     return {{"point_mass_kg", physical.point_mass},
             {"c_F_m_per_N", physical.c_F},

@@ -39,7 +39,7 @@ compare::Document motion_check_document(const MotionCheck& check, const std::str
                  {"rms_without_lag_m", check.lag_rms_m},
                  {"at_rest_rms_m", check.at_rest_rms_m},
                  {"with_inertia_rms_m", check.with_inertia_rms_m},
-                 {"no_inertia", text_or_null(check.no_inertia)},
+                 {"no_inertia", text_or_null(check.missing_inertia_reason)},
                  {"nearer", check.nearer ? Json(to_string(*check.nearer)) : Json()},
                  {"damping_s", check.damping.material},
                  {"drag_N_s_per_m2", check.damping.air},

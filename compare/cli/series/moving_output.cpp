@@ -6,7 +6,7 @@
 namespace dlo::cli {
 namespace {
 
-using compare::MovingChoices;
+using compare::MovingAssumptions;
 using compare::MovingRow;
 
 const char* to_text(compare::MovingStatus status) {
@@ -14,7 +14,7 @@ const char* to_text(compare::MovingStatus status) {
   return status == compare::MovingStatus::too_many_steps ? "given up" : "diverged";
 }
 
-Json moving_json(const MovingChoices& choices) {
+Json moving_json(const MovingAssumptions& choices) {
   return {{"length_unit_m", choices.length_unit},
           {"grip_force_at_5_percent_N", choices.grip_force},
           {"angle_rad", choices.angle},
@@ -24,10 +24,10 @@ Json moving_json(const MovingChoices& choices) {
           {"start_offset_segments", choices.start_offset}};
 }
 
-Json moving_json(const compare::MovingDistance& distance) {
+Json moving_json(const compare::MovingAgreement& distance) {
   // A factor that is not finite becomes null.
   return {{"force_factor", distance.force_factor},
-          {"counters_near", distance.counters_near},
+          {"counters_near", distance.matching_counters},
           {"counters", distance.counters}};
 }
 
@@ -52,7 +52,7 @@ Json moving_json(const std::vector<MovingRow>& rows) {
                           {"d_m_above_l_s", row.printed->limited_steps},
                           {"average_force_N", row.printed->average_force}};
     }
-    const compare::PointReading reading = compare::point_reading(row.run.c_F, row.run.c_h);
+    const compare::PointParameters reading = compare::point_parameters(row.run.c_F, row.run.c_h);
     entry["reading"] = {{"point_mass_kg", reading.mass},
                         {"damping_rate_per_s", reading.damping_rate},
                         {"drag_N_s_per_m", reading.drag}};

@@ -47,7 +47,7 @@ Json event_json(const Track& track, const TrackEvent& event) {
   result["to_m"] = event.contact ? Json(event.contact->part.end) : Json(nullptr);
   if (event.contact) {
     result["contact_kind"] = energy_model::to_string(event.contact->part.kind);
-    result["goes_on"] = event.contact->goes_on;
+    result["goes_on"] = event.contact->contact_persists;
   } else {
     result["released_J"] = event.released;
     result["released_bound_J"] = event.released_bound;

@@ -71,7 +71,7 @@ def column(card):
     return {name: "-" if error is None else f"{error:.1e}" for name, error in errors.items()}
 
 
-def last_digit(number):
+def last_digit_unit(number):
     """Returns the value of one unit in the last digit of a number that is given as text."""
     mantissa, _, exponent = number.partition("e")
     return 10.0 ** (int(exponent or 0) - len(mantissa.partition(".")[2]))
@@ -82,7 +82,7 @@ def same(ours, theirs):
     number = r"\d+\.\d+(?:e[-+]\d+)?"
     if re.sub(number, "#", ours) != re.sub(number, "#", theirs):
         return False
-    return all(abs(float(a) - float(b)) <= max(1.01 * last_digit(a), 1.01 * last_digit(b), SHARE * float(a))
+    return all(abs(float(a) - float(b)) <= max(1.01 * last_digit_unit(a), 1.01 * last_digit_unit(b), SHARE * float(a))
                for a, b in zip(re.findall(number, ours), re.findall(number, theirs)))
 
 

@@ -51,7 +51,7 @@ std::string toml_text(const py::dict& document) {
 }
 
 SharedScene scene_at(const SharedScene& data, double time) {
-  if (!compare::motion_of(data->scene)) {
+  if (!compare::motion_time_span(data->scene)) {
     throw compare::InputError(
         fmt::format("{}: time = {:g}: nothing moves (allowed: None, or a scene with "
                     "[[gripper.pose]] or [[obstacle.pose]])",
@@ -180,9 +180,9 @@ void bind_scene(py::module_& module) {
              });
   module.def("parse_scene", &parse_scene);
   module.def("scene_document", [](const SharedScene& scene, std::optional<int> points) {
-    compare::Scene told = scene->scene;
-    if (points) told.force_model.points = *points;
-    return compare::scene_document_text(told);
+    compare::Scene exported = scene->scene;
+    if (points) exported.force_model.points = *points;
+    return compare::scene_document_text(exported);
   });
   module.def("scene_at", &scene_at);
   module.def("calibrated_scene", &calibrated_scene);

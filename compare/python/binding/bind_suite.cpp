@@ -109,7 +109,8 @@ std::optional<Gate> gate_of(const py::dict& what) {
     throw compare::InputError("suite: out of range (allowed: relative and absolute >= 0)");
   }
   const bool update = what["update"].cast<bool>();
-  return Gate{file, update, update ? compare::present_baseline(file) : compare::load_baseline(file),
+  return Gate{file, update,
+              update ? compare::load_baseline_if_exists(file) : compare::load_baseline(file),
               tolerance};
 }
 

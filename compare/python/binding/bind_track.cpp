@@ -51,8 +51,8 @@ py::object track(const SharedScene& shared, const py::dict& what, const py::obje
   compare::TrackRequest request{
       .options = {.from = what["begin"].cast<Given>(),
                   .to = what["end"].cast<Given>(),
-                  .force = what["force"].cast<bool>() ? compare::ForceBeside::runs
-                                                      : compare::ForceBeside::absent,
+                  .force = what["force"].cast<bool>() ? compare::ForceModelRun::runs
+                                                      : compare::ForceModelRun::absent,
                   .samples = what["samples"].cast<int>(),
                   .solve = verified_options(limits)},
       .frame_rate = what["frame_rate"].cast<Given>(),

@@ -34,7 +34,7 @@ ChainRod chain_rod(const SceneData& data, const std::optional<Eigen::Matrix3Xd>&
                    std::optional<double> grip_stiffness) {
   const compare::Scene& scene = data.scene;
   const compare::ForceModelSettings& settings = scene.force_model;
-  if (compare::turn_into_plane(scene, settings)) {
+  if (compare::plane_transform(scene, settings)) {
     throw InputError(fmt::format(
         "{}: a rod that is intrinsically curved out of the plane z = 0 is not stepped from Python "
         "(allowed: in that plane, or dlo.solve(scene, model=\"force\"))",
@@ -45,7 +45,7 @@ ChainRod chain_rod(const SceneData& data, const std::optional<Eigen::Matrix3Xd>&
   force_model::BatchRod start;
   std::vector<std::size_t> all(scene.obstacles.size());
   std::iota(all.begin(), all.end(), std::size_t{0});
-  if (hangs && !compare::takes_twist(scene, settings)) {
+  if (hangs && !compare::models_twist(scene, settings)) {
     start.points = discretisation.starts.front();
     compare::set_obstacles(scene, all, discretisation);
     start.rod = discretisation.rod;
@@ -81,16 +81,16 @@ Eigen::Matrix3Xd moved_targets(const force_model::Rod& rod, std::size_t gripper,
     if (direction) throw InputError("direction: a pin has none (allowed: None)");
     return position;
   }
-  const Eigen::Vector3d held = grip.targets.col(1) - grip.targets.col(0);
-  const double behind = (grip.reference - grip.targets.col(0)).dot(held.normalized());
+  const Eigen::Vector3d gripped_segment = grip.targets.col(1) - grip.targets.col(0);
+  const double behind = (grip.reference - grip.targets.col(0)).dot(gripped_segment.normalized());
   if (direction && !(direction->norm() > 0)) {
     throw InputError("direction: must not be the zero vector");
   }
   // grip_targets() is not used because it allows at most half a segment behind a gripper.
-  const Eigen::Vector3d along = direction ? direction->normalized() : held.normalized();
+  const Eigen::Vector3d along = direction ? direction->normalized() : gripped_segment.normalized();
   Eigen::Matrix3Xd targets(3, 2);
   targets.col(0) = position - behind * along;
-  targets.col(1) = targets.col(0) + held.norm() * along;
+  targets.col(1) = targets.col(0) + gripped_segment.norm() * along;
   return targets;
 }
 

@@ -60,7 +60,7 @@ toml::array list_from(const py::handle& list, const Place& place);
 
 /// Passes a converted value to `put(value)`.
 template <typename Put>
-void place_value(const py::handle& value, const Place& place, const Put& put) {
+void pass_value(const py::handle& value, const Place& place, const Put& put) {
   require_within_limits(place);
   if (py::isinstance<py::bool_>(value)) return put(value.cast<bool>());
   if (py::isinstance<py::str>(value)) return put(text_from(value, place.path));
@@ -69,7 +69,7 @@ void place_value(const py::handle& value, const Place& place, const Put& put) {
   }
   if (py::isinstance<py::float_>(value)) return put(value.cast<double>());
   const bool is_array = py::hasattr(value, "tolist");  // arrays and scalars of NumPy
-  if (is_array) return place_value(value.attr("tolist")(), place.within(), put);
+  if (is_array) return pass_value(value.attr("tolist")(), place.within(), put);
   if (PyIndex_Check(value.ptr()) != 0) return put(integer_from(value, place.path));
   if (py::isinstance<py::list>(value) || py::isinstance<py::tuple>(value)) {
     return put(list_from(value, place));
@@ -81,8 +81,8 @@ void place_value(const py::handle& value, const Place& place, const Put& put) {
 toml::array list_from(const py::handle& list, const Place& place) {
   toml::array array;
   for (const py::handle& element : list) {
-    place_value(element, place.within(),
-                [&array](auto&& value) { array.push_back(std::forward<decltype(value)>(value)); });
+    pass_value(element, place.within(),
+               [&array](auto&& value) { array.push_back(std::forward<decltype(value)>(value)); });
   }
   return array;
 }
@@ -100,7 +100,7 @@ toml::table table_from(const py::dict& document, const Place& place) {
     }
     const std::string name = text_from(key, place.path);
     const std::string path = place.path.empty() ? name : fmt::format("{}.{}", place.path, name);
-    place_value(value, place.within(path), [&](auto&& placed) {
+    pass_value(value, place.within(path), [&](auto&& placed) {
       table.insert_or_assign(name, std::forward<decltype(placed)>(placed));
     });
   }

@@ -11,20 +11,19 @@ namespace {
 using namespace py::literals;  // NOLINT(google-build-using-namespace): of names alone
 
 /// Returns an axis as a dict, with the figure's tics; None: tics that the axes choose.
-py::dict axis_dict(const compare::PlotAxis& laid_out, const compare::PlotAxis& described) {
+py::dict axis_dict(const compare::PlotAxis& axis, const compare::PlotAxis& described) {
   py::object tics = py::none();
   if (described.tics) {
     py::list list;
     for (const compare::Tic& tic : *described.tics) list.append(py::make_tuple(tic.at, tic.label));
     tics = list;
   }
-  return py::dict("label"_a = laid_out.label, "tics"_a = tics,
-                  "log"_a = py::bool_(laid_out.logarithmic),
-                  "limits"_a = py::make_tuple(*laid_out.from, *laid_out.to));
+  return py::dict("label"_a = axis.label, "tics"_a = tics, "log"_a = py::bool_(axis.logarithmic),
+                  "limits"_a = py::make_tuple(*axis.from, *axis.to));
 }
 
 py::dict curve_dict(const compare::PlottedCurve& curve) {
-  const compare::Look& look = curve.look;
+  const compare::CurveStyle& look = curve.look;
   return py::dict("title"_a = curve.title,
                   "points"_a = curve.z.empty() ? py::make_tuple(curve.x, curve.y)
                                                : py::make_tuple(curve.x, curve.y, curve.z),

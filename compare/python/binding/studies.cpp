@@ -197,7 +197,8 @@ py::object regress(const std::vector<SharedScene>& scenes, const std::string& fi
   bool written = false;
   const compare::Regression found = run_long([&](Signals& signals) {
     // An unreadable baseline is reported before minutes of solving.
-    const auto baseline = update ? compare::present_baseline(file) : compare::load_baseline(file);
+    const auto baseline =
+        update ? compare::load_baseline_if_exists(file) : compare::load_baseline(file);
     compare::Regression measured = compare::regress(
         scenes_of(scenes), baseline, request, [&](auto, auto) { signals.throw_if_stopped(); });
     written = update && measured.solved();

@@ -26,7 +26,7 @@ def is_file(value: Any) -> bool:
     return isinstance(value, (str, bytes)) or hasattr(value, "__fspath__")
 
 
-def many(scenes: Union[SceneLike, Iterable[SceneLike]]) -> list[SceneLike]:
+def as_scene_list(scenes: Union[SceneLike, Iterable[SceneLike]]) -> list[SceneLike]:
     if isinstance(scenes, Scene) or is_file(scenes):
         return [scenes]  # type: ignore[list-item]
     require("scenes", scenes, LIST)
@@ -226,7 +226,7 @@ def calibrate(
     scene's (law paper).
     """
     what = locals()
-    data = [data_of(scene, materials, time, calibrated) for scene in many(scenes)]
+    data = [data_of(scene, materials, time, calibrated) for scene in as_scene_list(scenes)]
     if motion is not None:
         if shapes is not None or len(data) != 1:
             raise InputError("calibrate: motion with shapes or several scenes (allowed: motion with one scene)")

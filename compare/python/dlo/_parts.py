@@ -83,14 +83,14 @@ def _unit_vector(value: Any) -> Any:
     return unit
 
 
-def as_it_is(value: Any) -> Any:
+def unchanged(value: Any) -> Any:
     """Returns a read-only copy of a value of a document."""
     if isinstance(value, dict):
-        return _Fixed({key: as_it_is(one) for key, one in value.items()})
+        return _Fixed({key: unchanged(one) for key, one in value.items()})
     if isinstance(value, numpy.ndarray):
         value = value.view()
         value.flags.writeable = False
-    return tuple(map(as_it_is, value)) if isinstance(value, (list, tuple)) else value
+    return tuple(map(unchanged, value)) if isinstance(value, (list, tuple)) else value
 
 
 def _default(form: str, allowed: str, missing: str) -> Any:
@@ -107,7 +107,7 @@ def field(key: str, row: tuple[str, ...], reader: Optional[Callable[[Any], Any]]
     """Returns an attribute for a key of a scene file: the value that is given in SI units, else the default, else
     None. row: of _dlo.scene_keys. reader: returns the value from its owner instead."""
     form, unit, allowed, missing, words = row
-    read: Callable[[Any], Any] = as_it_is
+    read: Callable[[Any], Any] = unchanged
     if form in ("direction", "angle or vector"):
         read = _unit_vector
     elif form.split()[0].rstrip(",") in ("number", "vector", "three", "four"):
@@ -119,7 +119,7 @@ def field(key: str, row: tuple[str, ...], reader: Optional[Callable[[Any], Any]]
         return default if value is None else read(value)
 
     doc = f"[{unit}] {words}" if unit else words
-    return property(reader or get, lambda owner, value: owner._put_one(key, value), doc=doc)
+    return property(reader or get, lambda owner, value: owner._set_validated(key, value), doc=doc)
 
 
 def store(table: dict[str, Any], key: str, value: Any) -> None:
@@ -155,13 +155,13 @@ class Part(Strict):
                 raise InputError(f"scene: {name}: unknown key{near} (allowed: {', '.join(sorted(known))})", name)
             store(self._table, key, value)
 
-    def _put_one(self, key: str, value: Any) -> None:
+    def _set_validated(self, key: str, value: Any) -> None:
         before = dict(self._table)
         store(self._table, key, value)
         if self._owner is None:
             return
         try:
-            self._owner._read_anew()
+            self._owner._reread()
         except InputError:
             self._table.clear()
             self._table.update(before)

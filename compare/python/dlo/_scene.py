@@ -72,11 +72,11 @@ class Scene(Strict):
         for key, value in {**dict.fromkeys(_SETTINGS), **fields}.items():
             self._put(key, value)
         if data is None:
-            self._read_anew()
+            self._reread()
         else:
             self._data = data
 
-    def _adopted(self, key: str, kind: type[Part], part: Any) -> Part:
+    def _owned_part(self, key: str, kind: type[Part], part: Any) -> Part:
         """Returns a copy of the part that belongs to this scene. Both share the values of keys, which never change."""
         if not isinstance(part, kind):
             raise InputError(f"{key}: a {type(part).__name__} (allowed: {kind.__name__})", key)
@@ -94,7 +94,7 @@ class Scene(Strict):
                 document[key] = self._parts[key]._table
         return document
 
-    def _read_anew(self) -> None:
+    def _reread(self) -> None:
         self._data = _dlo.read_scene(self._document(), self._file, self._materials)
 
     def _change(self, fields: dict[str, Any]) -> None:
@@ -102,7 +102,7 @@ class Scene(Strict):
         try:
             for key, value in fields.items():
                 self._put(key, value)
-            self._read_anew()
+            self._reread()
         except Exception:
             self._top, self._table, self._parts = before
             raise
@@ -151,7 +151,7 @@ class Scene(Strict):
     def _with_materials(self, path: FileName) -> "Scene":
         scene = self.copy()
         scene._materials = materials_file(path)
-        scene._read_anew()
+        scene._reread()
         return scene
 
     def replace(self, **fields: Any) -> "Scene":
@@ -164,7 +164,7 @@ class Scene(Strict):
         if key in _PARTS:
             parts = () if value is None else value
             require(key, parts, LIST)
-            self._parts[key] = tuple(self._adopted(key, _PARTS[key], part) for part in parts)
+            self._parts[key] = tuple(self._owned_part(key, _PARTS[key], part) for part in parts)
         elif key in _SETTINGS:
             kind = _SETTINGS[key]
             if not isinstance(value, kind):
@@ -173,13 +173,13 @@ class Scene(Strict):
                 for one in table:
                     require(f"{key}: a key", one, TEXT)
                 value = kind(**table)
-            self._parts[key] = self._adopted(key, kind, value)
+            self._parts[key] = self._owned_part(key, kind, value)
         elif key in _ROD or key in _TOP:
             store(self._table if key in _ROD else self._top, key, value)
         else:
             raise TypeError(self._no_field(key))
 
-    def _put_one(self, key: str, value: Any) -> None:
+    def _set_validated(self, key: str, value: Any) -> None:
         self._change({key: value})
 
     def __repr__(self) -> str:

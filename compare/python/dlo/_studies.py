@@ -15,7 +15,7 @@ from ._arguments import COUNT, LIST, NUMBER, TABLE, TEXT, checked, require
 from ._documents import Benchmark, Modes, Regression, ScoreCard, Stability, Track
 from ._errors import InputError
 from ._files import FileName, file_name
-from ._functions import many, shape_pair
+from ._functions import as_scene_list, shape_pair
 from ._scene import Calibrated, Quantity, Scene, SceneLike, as_scene, data_of
 from ._time_limit import within
 
@@ -98,7 +98,7 @@ def bench(
     scenes: one or more; none: a steel rod and one a hundred times softer. seconds: time for all runs.
     repeats: runs per median.
     """
-    return Benchmark(_dlo.bench(list(map(data_of, many(scenes))), seconds, repeats))
+    return Benchmark(_dlo.bench(list(map(data_of, as_scene_list(scenes))), seconds, repeats))
 
 
 @checked()
@@ -118,7 +118,7 @@ def regress(
     Raises InputError, or ConvergenceError where a scene of an update is not solved and the baseline is left as it was.
     """
     what = locals()
-    data = [data_of(scene, materials, time, calibrated) for scene in many(scenes)]
+    data = [data_of(scene, materials, time, calibrated) for scene in as_scene_list(scenes)]
     what["tolerance"] = None if tolerance is None else str(tolerance)
     file = file_name(baseline, "baseline")
     name = os.fsdecode(file) if update else ""

@@ -36,10 +36,10 @@ void require_regular(const struct stat& status, const std::string& name) {
 }
 
 /// Returns a hint if the file exists with the extension .toml, which users often omit; else "".
-std::string nearby(const std::string& path, int error) {
+std::string toml_extension_hint(const std::string& path, int error) {
   std::error_code unknown;
-  const bool there = error == ENOENT && std::filesystem::is_regular_file(path + ".toml", unknown);
-  return there ? fmt::format(", but {}.toml is there", path) : "";
+  const bool exists = error == ENOENT && std::filesystem::is_regular_file(path + ".toml", unknown);
+  return exists ? fmt::format(", but {}.toml is there", path) : "";
 }
 
 [[noreturn]] void refuse_input(const std::string& output, const std::string& name,
@@ -113,7 +113,7 @@ InputFile::InputFile(std::string path) : name_(std::move(path)) {
     descriptor_ = ::open(name_.c_str(), O_RDONLY | O_CLOEXEC | O_NOCTTY);
   } while (descriptor_ < 0 && errno == EINTR);
   const int error = errno;
-  if (descriptor_ < 0) refuse_file(name_, error, nearby(name_, error));
+  if (descriptor_ < 0) refuse_file(name_, error, toml_extension_hint(name_, error));
 }
 
 InputFile::InputFile(int descriptor, std::string name)
@@ -121,7 +121,7 @@ InputFile::InputFile(int descriptor, std::string name)
 
 InputFile::~InputFile() { ::close(descriptor_); }
 
-bool InputFile::read_some(std::string& text, std::size_t most) {
+bool InputFile::read_block(std::string& text, std::size_t most) {
   constexpr std::size_t block = 1 << 16;
   const std::size_t before = text.size();
   text.resize(before + std::min(block, most));
@@ -140,7 +140,7 @@ bool InputFile::read_some(std::string& text, std::size_t most) {
 
 std::string InputFile::read_all(std::size_t largest) {
   std::string text;
-  while (read_some(text, largest + 1 - text.size())) {
+  while (read_block(text, largest + 1 - text.size())) {
     if (text.size() <= largest) continue;
     throw InputError(
         fmt::format("{}: too large (allowed: files of up to {} bytes)", name_, largest));

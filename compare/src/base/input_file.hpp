@@ -27,10 +27,10 @@ class InputFile {
 
   /// Appends the next bytes, at most `most`, to `text`. Returns false at the end of the file.
   /// @throws InputError that names the file, the reason and the position if it cannot be read
-  bool read_some(std::string& text, std::size_t most);
+  bool read_block(std::string& text, std::size_t most);
 
-  /// Returns the rest of the file. @throws InputError as read_some, or if it is more than `largest`
-  /// bytes
+  /// Returns the rest of the file. @throws InputError as read_block, or if it is more than
+  /// `largest` bytes
   [[nodiscard]] std::string read_all(std::size_t largest = largest_file);
 
  private:

@@ -39,7 +39,7 @@ double shown(double value, double magnitude) {
 
 bool underflows(std::string_view number) { return decimal_exponent(number) < 0; }
 
-std::string beyond_double(std::string_view number) {
+std::string out_of_range_message(std::string_view number) {
   return underflows(number)
              ? fmt::format("{} is too small (allowed: 0, or 2.3e-308 and more)", shortened(number))
              : fmt::format("{} is too large (allowed: up to 1.7e308)", shortened(number));

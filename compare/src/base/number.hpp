@@ -46,7 +46,7 @@ template <typename Number>
 [[nodiscard]] bool underflows(std::string_view number);
 
 /// Returns the error and the allowed range of a number that a double cannot represent.
-[[nodiscard]] std::string beyond_double(std::string_view number);
+[[nodiscard]] std::string out_of_range_message(std::string_view number);
 
 /// Converts a whole field to a number, which may be infinite or NaN; empty if it is not a number.
 [[nodiscard]] std::optional<double> shape_number(std::string_view field);

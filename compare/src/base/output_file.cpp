@@ -170,7 +170,7 @@ struct OutputFile::State {
   }
 
   /// Copies owner and permissions of the replaced file, as far as this user may set them.
-  void take_over_permissions() const {
+  void copy_permissions() const {
     const std::optional<struct stat> existing = status_of(target.path);
     if (!existing) return;
     constexpr unsigned permissions = 07777;
@@ -190,7 +190,7 @@ struct OutputFile::State {
     if (target.kind == OutputTarget::Kind::descriptor) return;
     if (target.kind == OutputTarget::Kind::device) return close_checked();
     require_no_input();  // a file that was read after this output was opened
-    take_over_permissions();
+    copy_permissions();
     // Network file systems report a full disk here or on close; some do not support fsync.
     if (::fsync(descriptor) != 0 && errno != EINVAL && errno != ENOSYS) {
       fail_to_write_output(file, errno);

@@ -73,7 +73,7 @@ std::string toml_string(const std::string& text) {
   const std::string json = json_string(text);
   std::string result;
   for (std::size_t i = 0; i < json.size(); ++i) {
-    const std::size_t bytes = control_bytes(json, i);
+    const std::size_t bytes = control_character_length(json, i);
     if (bytes == 0) {
       result += json[i];
       continue;

@@ -49,7 +49,7 @@ extern "C" void end_groups_and_process(int number) {
 /// Returns the new path in a folder by which `make(path)` succeeded; empty if it cannot succeed,
 /// with the reason in errno.
 template <typename Make>
-std::string made_in(const std::filesystem::path& folder, const Make& make) {
+std::string make_path_in(const std::filesystem::path& folder, const Make& make) {
   for (;;) {
     std::uint64_t random = 0;
     if (::getrandom(&random, sizeof random, 0) != sizeof random) return {};
@@ -116,7 +116,7 @@ void end_groups_at_signals() {
 }
 
 TemporaryFile::TemporaryFile(const std::filesystem::path& folder) {
-  path_ = made_in(folder, [this](const char* path) {
+  path_ = make_path_in(folder, [this](const char* path) {
     // The kernel applies the umask, which mkstemp would not.
     descriptor_ = ::open(path, O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
     return descriptor_ >= 0;
@@ -126,7 +126,7 @@ TemporaryFile::TemporaryFile(const std::filesystem::path& folder) {
 TemporaryFile::~TemporaryFile() { ::unlink(path_.c_str()); }
 
 TemporaryFolder::TemporaryFolder(const std::string& failure, const std::filesystem::path& folder)
-    : path_(made_in(folder, [](const char* path) { return ::mkdir(path, S_IRWXU) == 0; })) {
+    : path_(make_path_in(folder, [](const char* path) { return ::mkdir(path, S_IRWXU) == 0; })) {
   if (path_.empty()) throw OutputError(fmt::format("{} ({})", failure, std::strerror(errno)));
 }
 

@@ -24,7 +24,7 @@ std::string display(std::string_view text) {
   std::string result;
   const std::string valid = valid_utf8(text);
   for (std::size_t i = 0; i < valid.size(); ++i) {
-    if (const std::size_t bytes = control_bytes(valid, i); bytes > 0) {
+    if (const std::size_t bytes = control_character_length(valid, i); bytes > 0) {
       result += '?';
       i += bytes - 1;
     } else {
@@ -34,7 +34,7 @@ std::string display(std::string_view text) {
   return result;
 }
 
-std::size_t control_bytes(std::string_view text, std::size_t at) {
+std::size_t control_character_length(std::string_view text, std::size_t at) {
   const auto byte = static_cast<unsigned char>(text[at]);
   if (byte < 0x20 || byte == 0x7f) return 1;
   return byte == 0xc2 && static_cast<unsigned char>(text[at + 1]) < 0xa0 ? 2 : 0;
@@ -76,8 +76,8 @@ std::string did_you_mean(std::string_view written, const std::vector<std::string
   return nearest.empty() ? "" : ", did you mean " + nearest + "?";
 }
 
-std::string with_places(std::string_view text,
-                        const std::vector<std::pair<std::string_view, std::string>>& values) {
+std::string replace_placeholders(
+    std::string_view text, const std::vector<std::pair<std::string_view, std::string>>& values) {
   std::string result;
   while (!text.empty()) {
     const auto value = std::find_if(values.begin(), values.end(),
@@ -138,7 +138,7 @@ std::string number_problem(std::string_view rest) {
   const std::string_view digits = std::string_view(number).substr(number.front() == '+' ? 1 : 0);
   const auto [value, length, error] = leading_number<double>(digits);
   const bool beyond = length == digits.size() && error == std::errc::result_out_of_range;
-  return beyond ? beyond_double(number) : "";
+  return beyond ? out_of_range_message(number) : "";
 }
 
 }  // namespace

@@ -20,7 +20,7 @@ namespace dlo::compare {
 [[nodiscard]] std::string display(std::string_view text);
 
 /// Returns the number of bytes of the control character at a position of valid UTF-8; 0: none.
-[[nodiscard]] std::size_t control_bytes(std::string_view text, std::size_t at);
+[[nodiscard]] std::size_t control_character_length(std::string_view text, std::size_t at);
 
 /// Returns the word that was probably meant: the first of those with the smallest Levenshtein
 /// distance, if that is at most two and less than half of the length of the written word; else an
@@ -34,7 +34,7 @@ namespace dlo::compare {
 
 /// Replaces placeholders by their values. Inserted values are not searched for placeholders.
 /// @param values  placeholders, none empty, and their values
-[[nodiscard]] std::string with_places(
+[[nodiscard]] std::string replace_placeholders(
     std::string_view text, const std::vector<std::pair<std::string_view, std::string>>& values);
 
 /// Wraps a text into lines of at most `width` characters, all but the first indented.

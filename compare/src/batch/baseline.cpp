@@ -94,7 +94,7 @@ std::vector<BaselineCase> load_baseline(const std::string& path) {
   return read_baseline(text, path);
 }
 
-std::vector<BaselineCase> present_baseline(const std::string& path) {
+std::vector<BaselineCase> load_baseline_if_exists(const std::string& path) {
   std::error_code unknown;  // ignored: an unusable name is reported when the file is written
   if (!std::filesystem::exists(path, unknown)) return {};
   return load_baseline(path);
@@ -102,7 +102,7 @@ std::vector<BaselineCase> present_baseline(const std::string& path) {
 
 void replace_baseline(const std::string& path, const std::vector<BaselineCase>& read,
                       const std::vector<BaselineCase>& cases) {
-  if (baseline_text(present_baseline(path)) != baseline_text(read)) {
+  if (baseline_text(load_baseline_if_exists(path)) != baseline_text(read)) {
     throw OutputError(path +
                       ": left as it is: another process has changed it since it was read "
                       "(allowed: one update at a time)");

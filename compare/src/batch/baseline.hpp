@@ -47,7 +47,7 @@ struct BaselineCase {
 [[nodiscard]] std::vector<BaselineCase> load_baseline(const std::string& path);
 
 /// Reads a baseline file as load_baseline does, or returns no cases if the file does not exist.
-[[nodiscard]] std::vector<BaselineCase> present_baseline(const std::string& path);
+[[nodiscard]] std::vector<BaselineCase> load_baseline_if_exists(const std::string& path);
 
 /// Replaces a baseline file if its content is still `read`.
 /// @throws OutputError if another process has changed the file, or if it cannot be written

@@ -170,7 +170,7 @@ std::map<std::string, const BaselineCase*> replaced_cases(
 
 /// Returns the settings in which a case differs from another one of its scene, such as "law hooke,
 /// N = 16".
-std::string settings_of(const BaselineCase& entry, const BaselineCase& other) {
+std::string differing_settings(const BaselineCase& entry, const BaselineCase& other) {
   std::string text;
   const auto add = [&](bool differs, const std::string& setting) {
     if (differs) text += (text.empty() ? "" : ", ") + setting;
@@ -183,9 +183,10 @@ std::string settings_of(const BaselineCase& entry, const BaselineCase& other) {
 }
 
 /// Describes how a case differs from the baseline's in settings or scene; empty if it does not.
-std::string change_between(const BaselineCase& before, const BaselineCase& now) {
+std::string describe_change(const BaselineCase& before, const BaselineCase& now) {
   if (before.name() != now.name()) {
-    return fmt::format("{} (baseline {})", settings_of(now, before), settings_of(before, now));
+    return fmt::format("{} (baseline {})", differing_settings(now, before),
+                       differing_settings(before, now));
   }
   const bool known = !before.fingerprint.empty() && !now.fingerprint.empty();
   return known && before.fingerprint != now.fingerprint ? "the scene is another than the baseline's"
@@ -239,7 +240,7 @@ void judge_case(RegressionResult& result, const MeasuredCase& measurement,
   }
   compare_errors(result, {.relative = tolerance.relative,
                           .absolute = tolerance.absolute * measurement.deflection_share});
-  const std::string change = change_between(*known, measurement.entry);
+  const std::string change = describe_change(*known, measurement.entry);
   if (change.empty()) return;
   result.verdict = RegressionVerdict::changed;
   result.message = fmt::format("{}: {}", change, result.message);

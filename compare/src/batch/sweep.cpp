@@ -216,7 +216,7 @@ void Sweep::compare_to_energy(const Scene& scene, const Solution& solution,
   cells.emplace_back(std::int64_t{energy.evaluations});
 }
 
-std::vector<SweepCell> Sweep::without_results(const std::string& status) const {
+std::vector<SweepCell> Sweep::cells_with_status(const std::string& status) const {
   std::vector<SweepCell> cells(result_columns().size());
   cells.back() = display(status);
   return cells;
@@ -232,13 +232,13 @@ std::vector<SweepCell> Sweep::results(std::int64_t row) const {
   } catch (const std::system_error&) {
     throw;  // no threads available: a failure of the machine, not of the scene
   } catch (const InputError& error) {
-    return without_results(error.what());
+    return cells_with_status(error.what());
   } catch (const ConvergenceError& error) {
-    return without_results(error.what());
+    return cells_with_status(error.what());
   } catch (const std::invalid_argument& error) {
-    return without_results(error.what());
+    return cells_with_status(error.what());
   } catch (const std::exception& error) {
-    return without_results(std::string("internal error: ") + error.what());
+    return cells_with_status(std::string("internal error: ") + error.what());
   }
 }
 

@@ -109,7 +109,7 @@ class Sweep {
   [[nodiscard]] std::vector<SweepCell> solved(const Scene& scene) const;
   void compare_to_energy(const Scene& scene, const Solution& solution,
                          std::vector<SweepCell>& cells) const;
-  [[nodiscard]] std::vector<SweepCell> without_results(const std::string& status) const;
+  [[nodiscard]] std::vector<SweepCell> cells_with_status(const std::string& status) const;
   void require_one_scene();
 
   SceneTemplate scene_;

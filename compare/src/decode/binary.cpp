@@ -29,8 +29,8 @@ bool is_known(const NumberFormat& format) {
   return n == 1 || n == 2 || n == 4 || n == 8;
 }
 
-std::optional<std::uint64_t> natural_at(std::string_view bytes, std::size_t at, std::size_t size,
-                                        bool big_endian) {
+std::optional<std::uint64_t> unsigned_at(std::string_view bytes, std::size_t at, std::size_t size,
+                                         bool big_endian) {
   if (at > bytes.size() || bytes.size() - at < size) return std::nullopt;
   std::uint64_t value = 0;
   for (std::size_t i = 0; i < size; ++i) {
@@ -46,7 +46,7 @@ std::vector<double> numbers_from(std::string_view bytes, std::size_t count,
   numbers.reserve(count);
   for (std::size_t i = 0; i < count; ++i) {
     numbers.push_back(number_of(
-        natural_at(bytes, i * format.bytes, format.bytes, format.big_endian).value(), format));
+        unsigned_at(bytes, i * format.bytes, format.bytes, format.big_endian).value(), format));
   }
   return numbers;
 }

@@ -26,7 +26,7 @@ struct NumberFormat {
 
 /// Returns the unsigned number that begins at `at`; empty if the bytes end before.
 /// @param size  number of bytes, 1 to 8
-[[nodiscard]] std::optional<std::uint64_t> natural_at(std::string_view bytes, std::size_t at,
-                                                      std::size_t size, bool big_endian = false);
+[[nodiscard]] std::optional<std::uint64_t> unsigned_at(std::string_view bytes, std::size_t at,
+                                                       std::size_t size, bool big_endian = false);
 
 }  // namespace dlo::compare

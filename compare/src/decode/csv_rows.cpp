@@ -11,10 +11,10 @@ namespace {
 
 constexpr char any_blanks = '\0';
 
-std::string_view trimmed(std::string_view text, std::string_view around) {
-  const std::size_t start = text.find_first_not_of(around);
+std::string_view trimmed(std::string_view text, std::string_view trimmed_characters) {
+  const std::size_t start = text.find_first_not_of(trimmed_characters);
   if (start == std::string_view::npos) return {};
-  return text.substr(start, text.find_last_not_of(around) - start + 1);
+  return text.substr(start, text.find_last_not_of(trimmed_characters) - start + 1);
 }
 
 char separator_of(std::string_view line) {
@@ -29,7 +29,7 @@ std::vector<std::string_view> split_fields(std::string_view line, const CsvForm&
   for (;;) {
     const bool blanks = form.separator == any_blanks;
     const std::size_t end = blanks ? line.find_first_of(" \t") : line.find(form.separator);
-    fields.push_back(trimmed(line.substr(0, end), form.around));
+    fields.push_back(trimmed(line.substr(0, end), form.trimmed_characters));
     if (end == std::string_view::npos || fields.size() > form.most_fields) return fields;
     line.remove_prefix(end + 1);
     if (blanks) line.remove_prefix(std::min(line.find_first_not_of(" \t"), line.size()));
@@ -44,10 +44,10 @@ void for_each_csv_row(std::string_view text, const std::string& file, CsvForm fo
   std::size_t rows = 0;
   for (long number = 1; !text.empty() && rows < form.most_rows; ++number) {
     const std::size_t end = text.find('\n');
-    const std::string_view line = trimmed(text.substr(0, end), form.around);
+    const std::string_view line = trimmed(text.substr(0, end), form.trimmed_characters);
     text.remove_prefix(end == std::string_view::npos ? text.size() : end + 1);
     if (line.empty() || line.front() == '#') continue;
-    if (form.separator == CsvForm::of_first_row) form.separator = separator_of(line);
+    if (form.separator == CsvForm::detect_from_first_row) form.separator = separator_of(line);
     take({number, fmt::format("{}:{}", file, number), split_fields(line, form)});
     ++rows;
   }

@@ -18,11 +18,11 @@ struct CsvRow {
 /// Format of a table.
 struct CsvForm {
   /// Separator is that of the first row: comma, semicolon, tab or any blanks.
-  static constexpr char of_first_row = '\1';
+  static constexpr char detect_from_first_row = '\1';
 
   char separator = ',';
   /// Characters that are skipped at both ends of a line and of a field.
-  std::string_view around = " \t\r";
+  std::string_view trimmed_characters = " \t\r";
   /// One more is read, so that the reader can report it.
   std::size_t most_fields = std::numeric_limits<std::size_t>::max();
   std::size_t most_rows = std::numeric_limits<std::size_t>::max();

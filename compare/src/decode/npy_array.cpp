@@ -39,9 +39,9 @@ std::string value_in(const std::string& header, const char* key, const char* pat
 
 Header read_header(std::string_view bytes, const std::string& name) {
   constexpr std::size_t before_length = 8;
-  const std::uint64_t version = natural_at(bytes, npy_magic.size(), 1).value_or(0);
+  const std::uint64_t version = unsigned_at(bytes, npy_magic.size(), 1).value_or(0);
   const std::size_t width = version == 1 ? 2 : 4;
-  const std::optional<std::uint64_t> length = natural_at(bytes, before_length, width);
+  const std::optional<std::uint64_t> length = unsigned_at(bytes, before_length, width);
   if (!bytes.starts_with(npy_magic) || version < 1 || version > 3 || !length) {
     throw InputError(name + ": not an array as NumPy saves it, of format 1, 2 or 3");
   }
@@ -126,11 +126,11 @@ void NpyArray::require_numbers() const {
     bytes *= size;
     if (bytes > InputFile::largest_file) fail(too_large(*this));
   }
-  const std::size_t there = bytes_.size() - begin_;
-  if (there == bytes) return;
+  const std::size_t available = bytes_.size() - begin_;
+  if (available == bytes) return;
   fail(fmt::format("{} numbers of {} bytes are {} bytes, and {} are there: {}", shape_text(),
-                   format_->bytes, bytes, there,
-                   there < bytes ? "the file is cut off" : "more than one array"));
+                   format_->bytes, bytes, available,
+                   available < bytes ? "the file is cut off" : "more than one array"));
 }
 
 double NpyArray::at(std::initializer_list<std::size_t> index) const {

@@ -11,10 +11,10 @@ namespace dlo::compare::cause_limits {
 inline constexpr double check_left = 0.5;
 /// `check`: fraction of the remaining deviation that each additional number must remove, since any
 /// number that is fitted removes some.
-inline constexpr double worth_of_a_number = 0.5;
+inline constexpr double required_reduction_per_parameter = 0.5;
 /// `check`: deviations below this fraction, or below this share of the length, count as equal: fits
 /// end there.
-inline constexpr double same_share = 0.02;
+inline constexpr double equality_share = 0.02;
 inline constexpr double same_length = 1e-5;
 /// `check`: deviation, divided by the length, above which a shape is simply another one, so that a
 /// fraction of it is no small deviation.
@@ -48,7 +48,7 @@ inline constexpr double fitted_motion_left = 0.3;
 /// the first since boundary layers may hardly be resolved.
 inline constexpr double second_order = 1.6;
 inline constexpr double no_order = 0.4;
-inline constexpr double some_order = 1.2;
+inline constexpr double approaching_order = 1.2;
 /// Tables: imbalance of the moments above which a shape is not at rest.
 inline constexpr double out_of_balance = 0.02;
 /// Tables: error that needs no cause, divided by the length: 1e-3 of the default tolerance. The

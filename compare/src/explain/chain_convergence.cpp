@@ -18,23 +18,24 @@ namespace dlo::compare {
 namespace {
 
 /// Deviation, in tolerances, above which the deviation of a misread file is not meaningful.
-constexpr double far_beyond = 10;
+constexpr double largest_meaningful_deviation = 10;
 
 /// Returns the chain that the file is nearest to. Returns std::nullopt unless the file's polyline
 /// is as long as the rod within the tolerance, enough of the rod is observed, and the file is
-/// within `right_chain` of the tolerance from the chain.
-std::optional<OwnPolygon> chain_of_file(const Scene& scene, const ShapeCheck& check,
-                                        const ShapeTolerance& tolerance) {
+/// within `chain_match_tolerance` of the tolerance from the chain.
+std::optional<CandidateChain> chain_matching_file(const Scene& scene, const ShapeCheck& check,
+                                                  const ShapeTolerance& tolerance) {
   const double longer = check.polyline_length_m - check.length_m;
   if (!(std::abs(longer) <= tolerance.allowed_m)) return std::nullopt;
-  if (!(check.seen_share >= tolerance.least_seen_share)) return std::nullopt;
-  const auto distance = [&](const OwnPolygon& chain) {
+  if (!(check.observed_share >= tolerance.least_observed_share)) return std::nullopt;
+  const auto distance = [&](const CandidateChain& chain) {
     return tolerance.largest ? chain.max_m : chain.rms_m;
   };
-  std::vector<OwnPolygon> chains = own_polygons(scene, check.alignment.shape, Springs::as_the_rod);
+  std::vector<CandidateChain> chains =
+      candidate_chains(scene, check.alignment.shape, Springs::rod_stiffness);
   const auto nearest = std::ranges::min_element(chains, {}, distance);
   if (nearest == chains.end()) return std::nullopt;
-  if (!(distance(*nearest) <= right_chain * tolerance.allowed_m)) return std::nullopt;
+  if (!(distance(*nearest) <= chain_match_tolerance * tolerance.allowed_m)) return std::nullopt;
   return std::move(*nearest);
 }
 
@@ -57,7 +58,7 @@ const Gripper* gripper_at(const Scene& scene, double s) {
 /// grippers. A segment that a clamp holds in its middle is bisected as a whole, of which a half
 /// belongs to the span on either side: the new segments of that span are as long as if 2N - 1/2 of
 /// them made up the N - 1/2 old ones.
-std::vector<double> refined_arc_lengths(const Scene& scene, const OwnPolygon& chain) {
+std::vector<double> refined_arc_lengths(const Scene& scene, const CandidateChain& chain) {
   std::vector<double> s = chain.rest.arc_length;
   std::vector<double> middles;  // clamps between the points
   for (const Gripper& gripper : scene.grippers) {
@@ -100,7 +101,7 @@ double distance_from(const Shape& chain, const energy_model::Equilibrium& rod, b
   return largest ? std::sqrt(gaps.colwise().squaredNorm().maxCoeff()) : rms(chain.arc_length, gaps);
 }
 
-int order_of(const Scene& scene, ChainClamp clamp) {
+int expected_order(const Scene& scene, ChainClamp clamp) {
   const bool is_clamped = std::ranges::any_of(
       scene.grippers, [](const Gripper& gripper) { return gripper.direction.has_value(); });
   return is_clamped && clamp != ChainClamp::middle ? 1 : 2;
@@ -108,7 +109,7 @@ int order_of(const Scene& scene, ChainClamp clamp) {
 
 /// Whether the distance [m] is within the bound of make_plan() for a polygon with the chain's
 /// points, if a clamp holds the middle of its first or last segment and the rod touches nothing.
-bool is_within_bound(const Scene& scene, const OwnPolygon& chain,
+bool is_within_bound(const Scene& scene, const CandidateChain& chain,
                      const energy_model::Equilibrium& rod, double distance_m) {
   const bool touches = std::ranges::any_of(
       rod.obstacles, [](const Eigen::Vector3d& force) { return force.norm() > 0; });
@@ -119,8 +120,8 @@ bool is_within_bound(const Scene& scene, const OwnPolygon& chain,
   const std::optional<Discretisation> polygon =
       hooke_polygon(held_in_middle, static_cast<int>(s.size()));
   if (!polygon) return false;
-  constexpr double same = 0.01;  // divided by a segment
-  const double tolerance = same * scene.length / static_cast<double>(s.size());
+  constexpr double relative_tolerance = 0.01;  // divided by a segment
+  const double tolerance = relative_tolerance * scene.length / static_cast<double>(s.size());
   for (std::size_t i = 1; i + 1 < s.size(); ++i) {
     if (std::abs(polygon->arc_length[i] - s[i]) > tolerance) return false;
   }
@@ -134,32 +135,33 @@ ChainJudgement judge_as_chain(const Scene& scene, const ShapeCheck& check,
                               const ShapeTolerance& tolerance) {
   ShapeJudgement result = judge(check, tolerance);
   if (result.passes() || !energy_model::succeeded(check.rod.status)) return {result, {}};
-  const std::optional<OwnPolygon> chain = chain_of_file(scene, check, tolerance);
+  const std::optional<CandidateChain> chain = chain_matching_file(scene, check, tolerance);
   if (!chain) return {result, {}};
-  const ChainConvergence way = chain_convergence(scene, *chain, check.rod, tolerance.largest);
-  if (way.error == ChainError::another_shape) return {result, {}};
+  const ChainConvergence convergence =
+      chain_convergence(scene, *chain, check.rod, tolerance.largest);
+  if (convergence.error == ChainError::different_shape) return {result, {}};
   const Eigen::Index segments = chain->rest.points.cols() - 1;
-  const std::string chain_words = words_of(chain->clamp, segments) + and_springs(*chain);
+  const std::string chain_words = words_of(chain->clamp, segments) + springs_clause(*chain);
   const std::string words = fmt::format("{}, {:.3g} mm away ({})", chain_words,
                                         (tolerance.largest ? chain->max_m : chain->rms_m) * 1e3,
                                         tolerance.largest ? "largest" : "RMS");
   const std::string refined =
-      std::isfinite(way.fine_m)
-          ? fmt::format("with {} segments {:.4g} mm", 2 * segments, way.fine_m * 1e3)
+      std::isfinite(convergence.fine_m)
+          ? fmt::format("with {} segments {:.4g} mm", 2 * segments, convergence.fine_m * 1e3)
           : std::string("within the plan's bound");
   const std::string distances =
       fmt::format("that chain is {:.4g} mm = {:.3g} % of l away from the rod, {}",
-                  way.coarse_m * 1e3, way.coarse_m / check.length_m * 100, refined);
-  if (way.error == ChainError::discretisation) {
+                  convergence.coarse_m * 1e3, convergence.coarse_m / check.length_m * 100, refined);
+  if (convergence.error == ChainError::discretisation) {
     result.verdict = ShapeVerdict::pass;
     result.reason = fmt::format(
         "right for {}, allowed {:.4g} mm = {:g} of the tolerance; {}: an error of discretisation",
-        words, right_chain * tolerance.allowed_m * 1e3, right_chain, distances);
+        words, chain_match_tolerance * tolerance.allowed_m * 1e3, chain_match_tolerance, distances);
   } else {
     result.verdict = ShapeVerdict::undetermined;
     result.reason = fmt::format(
         "too coarse to judge: it is {}; {}, {:.3g} times less, but {} times are expected", words,
-        distances, way.coarse_m / way.fine_m, 1 << way.order);
+        distances, convergence.coarse_m / convergence.fine_m, 1 << convergence.order);
   }
   return {result, Explanation{.cause = chain_words,
                               .rms_m = chain->rms_m,
@@ -172,8 +174,9 @@ ShapeJudgement with_explanation(ShapeJudgement judgement,
                                 const ShapeTolerance& tolerance) {
   if (judgement.passes() || explanations.empty()) return judgement;
   const Explanation& best = explanations.front();
-  const bool is_misread = judgement.judged_m > far_beyond * tolerance.allowed_m;
-  if (best.kind == ExplanationKind::file && is_misread && best.rms_m <= tolerance.allowed_m) {
+  const bool is_wrong_file =
+      judgement.judged_m > largest_meaningful_deviation * tolerance.allowed_m;
+  if (best.kind == ExplanationKind::file && is_wrong_file && best.rms_m <= tolerance.allowed_m) {
     judgement.reason = fmt::format("RMS {:.4g} mm if {}; as it was read: {}", best.rms_m * 1e3,
                                    best.cause, judgement.reason);
     return judgement;
@@ -184,14 +187,14 @@ ShapeJudgement with_explanation(ShapeJudgement judgement,
   return judgement;
 }
 
-ChainConvergence chain_convergence(const Scene& scene, const OwnPolygon& chain,
+ChainConvergence chain_convergence(const Scene& scene, const CandidateChain& chain,
                                    const energy_model::Equilibrium& rod, bool largest) {
   ChainConvergence result;
-  result.order = order_of(scene, chain.clamp);
+  result.order = expected_order(scene, chain.clamp);
   result.coarse_m = distance_from(chain.rest, rod, largest);
   result.fine_m = std::numeric_limits<double>::quiet_NaN();
   double finest_m = result.fine_m;
-  OwnPolygon fine = chain;
+  CandidateChain fine = chain;
   for (int bisections = 1; bisections <= most_bisections; ++bisections) {
     const Shape start = resample(fine.rest, refined_arc_lengths(scene, fine));
     std::optional<Shape> rest = chain_at_rest(scene, start, fine);

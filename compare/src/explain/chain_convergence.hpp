@@ -14,12 +14,12 @@ enum class ChainError {
   discretisation,
   too_coarse,  ///< the distance decreases with shorter segments, but not yet with that order
   /// Eight times as many segments do not halve the distance: another shape than the rod.
-  another_shape,
+  different_shape,
 };
 
 /// Distances of a chain and of the chain with twice as many segments from a rod, both at rest.
 struct ChainConvergence {
-  ChainError error = ChainError::another_shape;
+  ChainError error = ChainError::different_shape;
   double coarse_m = 0;  ///< d(N): distance of the chain [m]
   double fine_m = 0;    ///< d(2N): with twice as many segments [m]; NaN if it is not at rest
   int order = 0;        ///< p: d(N) / d(2N) tends to 2^p for short segments
@@ -31,7 +31,7 @@ struct ChainConvergence {
 /// The error is one of discretisation if d(N) / d(2N) is 2^p within 30 %, or if d(N) is within the
 /// bound of make_plan for such a polygon.
 /// @param largest  whether distances are the largest of a point, not the RMS along the rod
-[[nodiscard]] ChainConvergence chain_convergence(const Scene& scene, const OwnPolygon& chain,
+[[nodiscard]] ChainConvergence chain_convergence(const Scene& scene, const CandidateChain& chain,
                                                  const energy_model::Equilibrium& rod,
                                                  bool largest);
 

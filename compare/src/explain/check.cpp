@@ -20,7 +20,8 @@ std::string point_text(const Eigen::Vector3d& point) {
                      shown(point.z(), large));
 }
 
-ShapeNear near_by(const Shape& shape, const Scene& scene, ToleranceShare tolerance, bool largest) {
+ShapeTestOutcome test_shape(const Shape& shape, const Scene& scene, ToleranceShare tolerance,
+                            bool largest) {
   if (!(tolerance.share > 0)) {
     throw std::invalid_argument(
         fmt::format("tolerance of a shape = {}, must be > 0, a share of the {}", tolerance.share,
@@ -71,16 +72,16 @@ void judge_significance(const ShapeCheckOptions& options,
 
 std::string other_stiffness_within(const CheckResult& result) {
   const EffectiveModulus& modulus = result.check.effective_modulus;
-  constexpr double hardly_another = 0.05;
+  constexpr double least_modulus_change = 0.05;
   // The shape passes as the rod, not only as a chain.
   const bool is_near = judge(result.check, result.tolerance).passes();
   const bool is_significant = result.judgement.significant.value_or(true);
   if (!is_near || !is_significant || !is_identified(modulus.optimum) ||
-      std::abs(modulus.ratio - 1) < hardly_another) {
+      std::abs(modulus.ratio - 1) < least_modulus_change) {
     return {};
   }
   const double at_E =
-      result.tolerance.part ? result.check.deviation.rms_m : result.check.whole_rms_m;
+      result.tolerance.part ? result.check.deviation.rms_m : result.check.whole_rod_rms_m;
   return fmt::format(
       "E*/E = {:.3g} does not contradict the verdict: the distance is {:.3g} mm at E* and {:.3g} "
       "mm at E, both within the tolerance",
@@ -88,7 +89,7 @@ std::string other_stiffness_within(const CheckResult& result) {
 }
 
 CheckResult check(const Scene& scene, const MeasuredShape& shape, const CheckRequest& request) {
-  const MeasuredShape whole = whole_of_segment_starts(scene, shape, request.shape.pose);
+  const MeasuredShape whole = complete_segment_starts(scene, shape, request.shape.pose);
   CheckResult result{.scene = scene,
                      .check = check_shape(scene, whole, request.shape),
                      .tolerance = request.tolerance.value_or(default_tolerance(scene.length)),
@@ -113,22 +114,22 @@ CheckResult check(const Scene& scene, const MeasuredShape& shape, const CheckReq
   if (request.explaining == Explaining::no) return result;
   if (result.judgement.verdict != ShapeVerdict::fail) {
     if (judged.chain) {
-      result.supersedes_modulus = better_than_stiffness(result.check, {*judged.chain});
+      result.superseding_cause = cause_better_than_stiffness(result.check, {*judged.chain});
     }
     return result;
   }
   result.explanations = explain_shape(scene, whole, result.check, request.shape);
   result.judgement = with_explanation(result.judgement, result.explanations, result.tolerance);
-  result.supersedes_modulus = better_than_stiffness(result.check, result.explanations);
+  result.superseding_cause = cause_better_than_stiffness(result.check, result.explanations);
   return result;
 }
 
-ShapeNear shape_near(const Shape& shape, const Scene& scene, ToleranceShare tolerance) {
-  return near_by(shape, scene, tolerance, false);
+ShapeTestOutcome shape_near(const Shape& shape, const Scene& scene, ToleranceShare tolerance) {
+  return test_shape(shape, scene, tolerance, false);
 }
 
-ShapeNear shape_within(const Shape& shape, const Scene& scene, ToleranceShare tolerance) {
-  return near_by(shape, scene, tolerance, true);
+ShapeTestOutcome shape_within(const Shape& shape, const Scene& scene, ToleranceShare tolerance) {
+  return test_shape(shape, scene, tolerance, true);
 }
 
 }  // namespace dlo::compare

@@ -30,20 +30,20 @@ namespace limits = cause_limits;
 
 /// Returns the deviation up to which deviations count as equal [m].
 double equal_deviation(double before, double length) {
-  return std::max(limits::same_share * std::min(before, limits::another_shape * length),
-                  limits::same_length * length);
+  return std::max(limits::equality_share * std::min(before, limits::different_shape_share * length),
+                  limits::equality_length_share * length);
 }
 
 /// Returns a price that combines the remaining deviation with the number of fitted numbers; smaller
 /// is better. Remaining deviations below the limit of equality count as that limit.
 /// @param before  deviation to explain [m];  @param length  of the rod [m]
-double price_of(double rms, int numbers, double before, double length) {
+double model_criterion(double rms, int numbers, double before, double length) {
   return std::max(rms, equal_deviation(before, length)) *
-         std::pow(1 / limits::worth_of_a_number, std::max(0, numbers));
+         std::pow(1 / limits::required_reduction_per_parameter, std::max(0, numbers));
 }
 
 /// Returns a shape with a straight extension of its last segment as last point.
-Shape extended_straight(Shape shape, double length) {
+Shape with_straight_extension(Shape shape, double length) {
   const Eigen::Index count = shape.points.cols();
   const Eigen::Vector3d end = 2 * shape.points.col(count - 1) - shape.points.col(count - 2);
   shape.points.conservativeResize(Eigen::NoChange, count + 1);
@@ -63,45 +63,46 @@ class Search {
     }
     align_.pose = options.pose;
     align_.arc_lengths = options.arc_lengths;
-    align_.up = up_of(scene, options.pose);
+    align_.up = upward_direction(scene, options.pose);
     if (check.measured_points == 1) most_numbers_ = 1;
   }
 
   [[nodiscard]] std::vector<Explanation> run() {
-    before_ = check_.whole_rms_m;
+    deviation_to_explain_ = check_.whole_rod_rms_m;
     // Without a deviation the check fails only because too little of the rod is observed.
-    if (!(before_ > limits::same_length * scene_.length)) return {};
+    if (!(deviation_to_explain_ > limits::equality_length_share * scene_.length)) return {};
     if (options_.pose == PoseFreedom::known) {
-      try_single_errors(scene_, shape_, check_, [this](const FileCause& one) { look_at(one); });
+      try_single_errors(scene_, shape_, check_,
+                        [this](const FileCause& one) { try_file_cause(one); });
     }
     // The smoothed shape is compared with the rod at the points of the file.
     const auto noise = noise_of_points(check_.alignment.shape, check_.rod);
     if (noise && noise->rms_m <= limits::check_left * check_.deviation.rms_m) add(*noise);
-    look_at_unstable();
-    if (!is_found(0)) look_at_chains(Springs::as_the_rod);
-    if (!is_found(1) && options_.pose == PoseFreedom::known) {
+    add_unstable_equilibrium();
+    if (!cannot_improve_with(0)) add_chain_causes(Springs::rod_stiffness);
+    if (!cannot_improve_with(1) && options_.pose == PoseFreedom::known) {
       try_joint_errors(scene_, shape_, check_.stretched_length_m,
-                       [this](const FileCause& one) { look_at(one); });
-      look_at_chains_said_rightly();
+                       [this](const FileCause& one) { try_file_cause(one); });
+      add_chains_of_corrected_file();
     }
     for (const SceneCause& cause :
-         scene_causes(scene_, check_.alignment.shape, length_of_shape(), lies_in_plane())) {
+         scene_causes(scene_, check_.alignment.shape, estimated_shape_length(), lies_in_plane())) {
       const auto numbers = static_cast<int>(cause.start.size());
-      if (numbers <= most_numbers_ && !is_found(numbers) && !is_over()) fit(cause);
+      if (numbers <= most_numbers_ && !cannot_improve_with(numbers) && !is_time_up()) fit(cause);
     }
-    if (!is_found(1)) look_at_chains(Springs::fitted);
-    if (!is_found(1)) look_at_chains(Springs::fitted, JointLaw::paper);
+    if (!cannot_improve_with(1)) add_chain_causes(Springs::fitted);
+    if (!cannot_improve_with(1)) add_chain_causes(Springs::fitted, JointLaw::paper);
     std::stable_sort(found_.begin(), found_.end(), [this](const auto& a, const auto& b) {
-      return price(a.first) < price(b.first);
+      return criterion(a.first) < criterion(b.first);
     });
     // A combination of several errors of a file is reported if no other explanation is better, and
     // then none of these errors alone.
     const bool is_joint = !found_.empty() && found_.front().second == joint_cause;
     std::vector<Explanation> result;
     result.reserve(found_.size());
-    for (auto& [explanation, same_as] : found_) {
+    for (auto& [explanation, cause_group] : found_) {
       const bool is_best = result.empty();
-      if (!is_best && same_as == joint_cause) continue;
+      if (!is_best && cause_group == joint_cause) continue;
       if (!is_best && is_joint && explanation.kind == ExplanationKind::file) continue;
       result.push_back(std::move(explanation));
     }
@@ -109,48 +110,48 @@ class Search {
   }
 
  private:
-  [[nodiscard]] bool is_over() const {
+  [[nodiscard]] bool is_time_up() const {
     return timer_.seconds() > options_.solve.time_limit || energy_model::interrupted();
   }
 
   /// Whether no explanation with so many numbers could be better than the best one found.
-  [[nodiscard]] bool is_found(int numbers) const {
-    return best_ && price(*best_) <= price({"", 0, numbers, ExplanationKind::scene});
+  [[nodiscard]] bool cannot_improve_with(int numbers) const {
+    return best_ && criterion(*best_) <= criterion({"", 0, numbers, ExplanationKind::scene});
   }
 
   /// Estimates the length of the shape [m]: its arcs are assumed to exceed their chords by the same
   /// ratio as those of the rod.
-  [[nodiscard]] double length_of_shape() const {
+  [[nodiscard]] double estimated_shape_length() const {
     const std::vector<double>& s = check_.alignment.shape.arc_length;
-    const double chords = lengths_along(check_.reference.points).back();
+    const double chords = arc_lengths_along(check_.reference.points).back();
     return check_.polyline_length_m * (s.back() - s.front()) / chords;
   }
 
   /// Returns the chains that may have the points of a shape, whose last end may be missing.
-  [[nodiscard]] std::vector<OwnPolygon> chains_of(
+  [[nodiscard]] std::vector<CandidateChain> chains_for_shape(
       const Shape& shape, Springs springs, std::optional<JointLaw> law = std::nullopt) const {
-    if (!lacks_last_end(shape)) return own_polygons(scene_, shape, springs, law);
-    return own_polygons(scene_, extended_straight(shape, scene_.length), springs, law,
-                        LastPoint::missing);
+    if (!lacks_last_segment_end(shape)) return candidate_chains(scene_, shape, springs, law);
+    return candidate_chains(scene_, with_straight_extension(shape, scene_.length), springs, law,
+                            LastPoint::missing);
   }
 
-  [[nodiscard]] bool lacks_last_end(const Shape& shape) const {
+  [[nodiscard]] bool lacks_last_segment_end(const Shape& shape) const {
     const double segment = scene_.length / static_cast<double>(shape.points.cols());
     return lacks_one_segment(shape.points, scene_.length) && shape.arc_length.front() < segment / 4;
   }
 
-  [[nodiscard]] std::string words_of(const OwnPolygon& chain, const Shape& shape) const {
-    const bool lacks_end = lacks_last_end(shape);
+  [[nodiscard]] std::string words_of(const CandidateChain& chain, const Shape& shape) const {
+    const bool lacks_end = lacks_last_segment_end(shape);
     return dlo::compare::words_of(chain.clamp, shape.points.cols() - (lacks_end ? 0 : 1)) +
            (lacks_end ? ", its last end missing as in MuJoCo's xpos" : "");
   }
 
-  /// Adds the chains that may have the points of the shape. @param law  as own_polygons(); the
+  /// Adds the chains that may have the points of the shape. @param law  as candidate_chains(); the
   /// shape of a chain with the paper's law depends on its number of segments
-  void look_at_chains(Springs springs, std::optional<JointLaw> law = std::nullopt) {
+  void add_chain_causes(Springs springs, std::optional<JointLaw> law = std::nullopt) {
     constexpr double stretch = 1e-6;  // strain of a chain's segments; fits are not more accurate
     const Shape& shape = check_.alignment.shape;
-    for (const OwnPolygon& chain : chains_of(shape, springs, law)) {
+    for (const CandidateChain& chain : chains_for_shape(shape, springs, law)) {
       const std::string words = words_of(chain, shape);
       if (law) {
         add({fmt::format("it is {}, with the paper's joint law, c_b = {:.3g} N, which does not "
@@ -161,18 +162,18 @@ class Search {
       } else if (springs == Springs::fitted) {
         const std::string own_law = law_words(chain);
         const std::string weight =
-            is_pulled_by_weight_alone(scene_)
+            is_loaded_by_weight_alone(scene_)
                 ? fmt::format(", or the weight {:.3g} times", 1 / chain.stiffness)
                 : "";
         add({fmt::format("it is {}, with springs of {:.3g} times EI/h{}{}{}", words,
                          chain.stiffness, own_law.empty() ? "" : ", ", own_law, weight),
              chain.rms_m, 1, ExplanationKind::scene},
             words);
-      } else if (chain.rms_m <= limits::check_left * before_ &&
+      } else if (chain.rms_m <= limits::check_left * deviation_to_explain_ &&
                  chain_convergence(scene_, chain, check_.rod, false).error !=
-                     ChainError::another_shape) {
+                     ChainError::different_shape) {
         // Discretisation is the cause only if the chain converges to the rod.
-        add({words + and_springs(chain), chain.rms_m, 0, ExplanationKind::discretisation,
+        add({words + springs_clause(chain), chain.rms_m, 0, ExplanationKind::discretisation,
              chain.max_m},
             words);
       }
@@ -180,12 +181,12 @@ class Search {
   }
 
   /// Adds chains that fit the points of a file after its errors are corrected.
-  void look_at_chains_said_rightly() {
-    if (!said_rightly_ || is_found(said_rightly_->numbers + 1)) return;
-    const Shape& shape = said_rightly_->shape;
-    for (const OwnPolygon& chain : chains_of(shape, Springs::as_the_rod)) {
-      add({said_rightly_->words + ", and it is " + words_of(chain, shape) + and_springs(chain),
-           chain.rms_m, said_rightly_->numbers + 1, ExplanationKind::file, chain.max_m},
+  void add_chains_of_corrected_file() {
+    if (!best_corrected_ || cannot_improve_with(best_corrected_->numbers + 1)) return;
+    const Shape& shape = best_corrected_->shape;
+    for (const CandidateChain& chain : chains_for_shape(shape, Springs::rod_stiffness)) {
+      add({best_corrected_->words + ", and it is " + words_of(chain, shape) + springs_clause(chain),
+           chain.rms_m, best_corrected_->numbers + 1, ExplanationKind::file, chain.max_m},
           joint_cause);
     }
   }
@@ -193,35 +194,37 @@ class Search {
   [[nodiscard]] bool lies_in_plane() const {
     const std::optional<Eigen::Vector3d> normal = scene_.plane_normal();
     if (!normal) return false;
-    return out_of_plane(*normal, check_.alignment.shape.points) < limits::same_share * before_;
+    return out_of_plane(*normal, check_.alignment.shape.points) <
+           limits::equality_share * deviation_to_explain_;
   }
 
-  [[nodiscard]] double price(const Explanation& explanation) const {
-    return price_of(explanation.rms_m, explanation.numbers, before_, scene_.length);
+  [[nodiscard]] double criterion(const Explanation& explanation) const {
+    return model_criterion(explanation.rms_m, explanation.numbers, deviation_to_explain_,
+                           scene_.length);
   }
 
-  /// @param same_as  name of a group of causes of which only the best is reported; empty: the cause
-  /// itself
-  void add(Explanation explanation, std::string same_as = {}) {
-    if (!(explanation.rms_m <= limits::check_left * before_)) return;
+  /// @param cause_group  name of a group of causes of which only the best is reported; empty: the
+  /// cause itself
+  void add(Explanation explanation, std::string cause_group = {}) {
+    if (!(explanation.rms_m <= limits::check_left * deviation_to_explain_)) return;
     if (explanation.numbers > most_numbers_) return;
-    if (!best_ || price(explanation) < price(*best_)) best_ = explanation;
-    if (same_as.empty()) same_as = explanation.cause;
-    const auto told = std::find_if(found_.begin(), found_.end(), [&](const auto& other) {
-      return other.second == same_as || other.first.cause == explanation.cause;
+    if (!best_ || criterion(explanation) < criterion(*best_)) best_ = explanation;
+    if (cause_group.empty()) cause_group = explanation.cause;
+    const auto previous = std::find_if(found_.begin(), found_.end(), [&](const auto& other) {
+      return other.second == cause_group || other.first.cause == explanation.cause;
     });
-    if (told == found_.end()) {
-      found_.emplace_back(std::move(explanation), std::move(same_as));
-    } else if (price(explanation) < price(told->first)) {
-      told->first = std::move(explanation);
+    if (previous == found_.end()) {
+      found_.emplace_back(std::move(explanation), std::move(cause_group));
+    } else if (criterion(explanation) < criterion(previous->first)) {
+      previous->first = std::move(explanation);
     }
   }
 
   /// Adds the nearest unstable equilibrium, if any. A solver may find it if it is confined to the
   /// plane, or if it does not search for a minimum.
-  void look_at_unstable() {
+  void add_unstable_equilibrium() {
     double least = std::numeric_limits<double>::infinity();
-    for (const OtherState& other : check_.state.others) {
+    for (const UncomparedEquilibrium& other : check_.state.others) {
       if (!other.stable) least = std::min(least, other.rms_from_shape_m);
     }
     if (!std::isfinite(least)) return;
@@ -229,7 +232,7 @@ class Search {
     const double out = normal ? out_of_plane(*normal, check_.reference.points) : 0;
     const bool left_plane =
         normal && out > limits::out_of_plane * scene_.length &&
-        out_of_plane(*normal, check_.alignment.shape.points) < limits::same_share * out;
+        out_of_plane(*normal, check_.alignment.shape.points) < limits::equality_share * out;
     add({left_plane
              ? fmt::format("the file stays in the scene's plane, as a planar model does: the rod "
                            "is unstable there and leaves the plane by up to {:.3g} mm",
@@ -259,15 +262,15 @@ class Search {
     return result;
   }
 
-  void look_at(const FileCause& cause) {
-    if (is_over()) return;
+  void try_file_cause(const FileCause& cause) {
+    if (is_time_up()) return;
     AlignOptions options = align_;
     options.pose = cause.pose;
     try {
       const Aligner aligner(cause.shape, scene_.length, options);
-      const auto& [laid, sample] = nearest(aligner);
-      const Measured measured = measure(laid, sample, scene_.length);
-      Explanation explanation{clauses_of(cause, laid), measured.rms_m, cause.numbers,
+      const auto& [aligned, sample] = nearest(aligner);
+      const Measured measured = measure(aligned, sample, scene_.length);
+      Explanation explanation{error_clauses(cause, aligned), measured.rms_m, cause.numbers,
                               ExplanationKind::file};
       // If points are omitted, they must have caused the deviation: the others must be near the
       // rod.
@@ -276,32 +279,33 @@ class Search {
         return;
       }
       if (!cause.part) {
-        explanation.rms_m = whole_of(measured, laid, sample, scene_.length).rms_m;
+        explanation.rms_m = whole_rod_distances(measured, aligned, sample, scene_.length).rms_m;
       }
-      const double price_of_this = price(explanation);
+      const double price_of_this = criterion(explanation);
       const bool has_all_points = cause.shape.points.cols() == shape_.points.cols();
-      if (has_all_points && explanation.rms_m <= limits::check_left * before_ &&
-          (!said_rightly_ || price_of_this < said_rightly_->price)) {
-        said_rightly_ = {explanation.cause, laid.shape, explanation.numbers, price_of_this};
+      if (has_all_points && explanation.rms_m <= limits::check_left * deviation_to_explain_ &&
+          (!best_corrected_ || price_of_this < best_corrected_->criterion)) {
+        best_corrected_ = {explanation.cause, aligned.shape, explanation.numbers, price_of_this};
       }
-      add(std::move(explanation), cause.same_as);
+      add(std::move(explanation), cause.cause_group);
     } catch (const InputError&) {
       // The shape is invalid with this cause.
     }
   }
 
   /// Describes all errors of a file, including those found by aligning it.
-  [[nodiscard]] std::string clauses_of(const FileCause& cause, const Alignment& laid) const {
+  [[nodiscard]] std::string error_clauses(const FileCause& cause, const Alignment& aligned) const {
     std::string words = cause.words;
     const auto add_clause = [&words](const std::string& clause) {
       words += (words.empty() ? "" : ", and ") + clause;
     };
     if (cause.part && cause.shape.points.cols() == shape_.points.cols()) {
-      add_clause(missing_words(laid.shape.arc_length, laid.shape.points, scene_.length));
+      add_clause(
+          missing_ends_clause(aligned.shape.arc_length, aligned.shape.points, scene_.length));
     }
     if (cause.pose == PoseFreedom::translation) {
       const bool may_be_the_gripper = words.empty() && scene_.grippers.size() == 1;
-      add_clause(origin_words(laid.pose.translation));
+      add_clause(origin_clause(aligned.pose.translation));
       if (may_be_the_gripper) words += ", or the gripper is elsewhere";
     }
     return words;
@@ -309,20 +313,23 @@ class Search {
 
   /// Returns the RMS deviation of the whole rod in the equilibrium that a cause results in [m].
   [[nodiscard]] double rms_of(const Scene& scene, const energy_model::Equilibrium& rod) const {
-    const Alignment laid =
+    const Alignment aligned =
         Aligner(shape_, scene.length, align_).align(Curve(rod.sample, scene.length));
-    return whole_of(measure(laid, rod.sample, scene.length), laid, rod.sample, scene.length).rms_m;
+    return whole_rod_distances(measure(aligned, rod.sample, scene.length), aligned, rod.sample,
+                               scene.length)
+        .rms_m;
   }
 
   void fit(const SceneCause& cause) {
     try {
-      const std::optional<FittedCause> found = fit_cause(
-          cause, shape_, check_.rod, options_, equal_deviation(before_, scene_.length), timer_);
+      const std::optional<FittedCause> found =
+          fit_cause(cause, shape_, check_.rod, options_,
+                    equal_deviation(deviation_to_explain_, scene_.length), timer_);
       if (!found) return;
       const Scene changed = cause.changed(found->numbers);
       add({cause.words(changed, found->numbers), rms_of(changed, found->rod),
            static_cast<int>(found->numbers.size()), ExplanationKind::scene},
-          cause.same_as);
+          cause.cause_group);
     } catch (const ResultError&) {
       // The scene is invalid, the shape has too few points for the cause, or no time is left.
     }
@@ -334,18 +341,18 @@ class Search {
   const ShapeCheckOptions& options_;
   std::vector<Curve> curves_;  // curves of the compared rod, then of other_rods
   AlignOptions align_;
-  double before_ = 0;
+  double deviation_to_explain_ = 0;
   int most_numbers_ = std::numeric_limits<int>::max();      // limit of fitted numbers
   std::vector<std::pair<Explanation, std::string>> found_;  // causes with their groups
   std::optional<Explanation> best_;
   /// The shape of a file after correction of the file's errors.
-  struct SaidRightly {
+  struct CorrectedShape {
     std::string words;
     Shape shape;  // in the scene's frame
     int numbers;
-    double price;
+    double criterion;
   };
-  std::optional<SaidRightly> said_rightly_;  // the one with the lowest price
+  std::optional<CorrectedShape> best_corrected_;  // the one with the lowest price
   Timer timer_;
 };
 
@@ -356,16 +363,16 @@ std::vector<Explanation> explain_shape(const Scene& scene, const MeasuredShape& 
   return Search(scene, shape, check, options).run();
 }
 
-std::optional<Explanation> better_than_stiffness(const ShapeCheck& check,
-                                                 const std::vector<Explanation>& explanations) {
+std::optional<Explanation> cause_better_than_stiffness(
+    const ShapeCheck& check, const std::vector<Explanation>& explanations) {
   if (!is_identified(check.effective_modulus.optimum)) return std::nullopt;
-  const auto price = [&check](double rms, int numbers) {
-    return price_of(rms, numbers, check.whole_rms_m, check.length_m);
+  const auto criterion = [&check](double rms, int numbers) {
+    return model_criterion(rms, numbers, check.whole_rod_rms_m, check.length_m);
   };
   // E* is one number, so an explanation without numbers is treated as one with one number.
-  const double of_stiffness = price(check.effective_modulus.rms_m, 0);
+  const double of_stiffness = criterion(check.effective_modulus.rms_m, 0);
   for (const Explanation& explanation : explanations) {
-    if (price(explanation.rms_m, std::max(1, explanation.numbers)) < of_stiffness) {
+    if (criterion(explanation.rms_m, std::max(1, explanation.numbers)) < of_stiffness) {
       return explanation;
     }
   }

@@ -39,10 +39,10 @@ struct FileUnit {
 
 /// Returns the units that the shape may be in, other than the one in which it was read.
 std::vector<FileUnit> other_units(const MeasuredShape& shape) {
-  constexpr double same = 1e-9;
+  constexpr double tolerance = 1e-9;
   std::string as_read = fmt::format("units of {:g} m", shape.unit);
   for (const NamedUnit& unit : named_units) {
-    if (std::abs(unit.metres / shape.unit - 1) < same) as_read = unit.name;
+    if (std::abs(unit.metres / shape.unit - 1) < tolerance) as_read = unit.name;
   }
   std::vector<FileUnit> units;
   for (const NamedUnit& unit : named_units) {
@@ -125,14 +125,14 @@ std::vector<FileAxes> other_axes(const Eigen::Vector3d& gravity, const Eigen::Ma
   constexpr double rounding = 1e-9;
   const double extent = points.cwiseAbs().maxCoeff();
   std::vector<FileAxes> result;
-  std::vector<Eigen::Matrix3Xd> told = {points};
+  std::vector<Eigen::Matrix3Xd> tried = {points};
   for (const Eigen::Matrix3d& axes : signed_permutations()) {
-    Eigen::Matrix3Xd said = axes * points;
-    const bool is_told = std::ranges::any_of(told, [&](const Eigen::Matrix3Xd& other) {
-      return (said - other).cwiseAbs().maxCoeff() <= rounding * extent;
+    Eigen::Matrix3Xd candidate = axes * points;
+    const bool is_tried = std::ranges::any_of(tried, [&](const Eigen::Matrix3Xd& other) {
+      return (candidate - other).cwiseAbs().maxCoeff() <= rounding * extent;
     });
-    if (is_told) continue;
-    told.push_back(std::move(said));
+    if (is_tried) continue;
+    tried.push_back(std::move(candidate));
     result.push_back({axes, fmt::format("{} ({})", name_of(axes, gravity), axes_text(axes))});
   }
   return result;
@@ -174,7 +174,7 @@ void combine_errors(const Scene& scene, const MeasuredShape& shape, double lengt
   all_axes.insert(all_axes.begin(), {Eigen::Matrix3d::Identity(), ""});
   std::vector<FileUnit> units = other_units(shape);
   units.insert(units.begin(), {"", 1});
-  const double share = lengths_along(shape.points).back() / length;
+  const double share = arc_lengths_along(shape.points).back() / length;
   for (const FileUnit& unit : units) {
     const double covered = share * unit.factor;
     if (several && !(covered > shortest && covered < longest)) continue;
@@ -192,9 +192,9 @@ void combine_errors(const Scene& scene, const MeasuredShape& shape, double lengt
                 .pose = pose,
                 .numbers = errors - 1 + moved,
                 .part = part,
-                .same_as = several              ? joint_cause
-                           : axes.words.empty() ? ""
-                                                : "axes"});
+                .cause_group = several              ? joint_cause
+                               : axes.words.empty() ? ""
+                                                    : "axes"});
         }
       }
     }
@@ -216,23 +216,23 @@ Eigen::Matrix3d picture_axes(const Eigen::Vector3d& gravity, double up) {
 
 /// Adds pixel coordinates: of any scale, counted from a corner, often downwards.
 void add_pixels(const Scene& scene, const MeasuredShape& shape, const TakeFileCause& take) {
-  const double per_unit = scene.length / lengths_along(shape.points).back();
-  constexpr double another_scale = 0.1;
-  if (!(std::abs(std::log(per_unit)) > another_scale)) return;
+  const double per_unit = scene.length / arc_lengths_along(shape.points).back();
+  constexpr double least_log_change = 0.1;
+  if (!(std::abs(std::log(per_unit)) > least_log_change)) return;
   for (const double up : {-1.0, 1.0}) {
     take({.words = fmt::format("the file is in pixels of {:.4g} mm, y {}", per_unit * 1e3,
                                up < 0 ? "down" : "up"),
           .shape = turned(scaled(shape, per_unit), picture_axes(scene.gravity, up)),
           .pose = PoseFreedom::translation,
           .numbers = 3,  // the scale, the axes and the origin
-          .same_as = "pixels"});
+          .cause_group = "pixels"});
   }
 }
 
 /// Returns the length and the order of the greedy path from a point, always to the nearest
 /// remaining point.
-std::pair<double, std::vector<Eigen::Index>> way_from(Eigen::Index start,
-                                                      const Eigen::Matrix3Xd& points) {
+std::pair<double, std::vector<Eigen::Index>> greedy_path_from(Eigen::Index start,
+                                                              const Eigen::Matrix3Xd& points) {
   std::vector<Eigen::Index> left(static_cast<std::size_t>(points.cols()));
   std::iota(left.begin(), left.end(), Eigen::Index{0});
   std::vector<Eigen::Index> order;
@@ -252,7 +252,8 @@ std::pair<double, std::vector<Eigen::Index>> way_from(Eigen::Index start,
 
 /// Adds another order of the points, if the shortest greedy path through them is clearly shorter
 /// than the file's polyline.
-void add_order(const MeasuredShape& shape, const ShapeCheck& check, const TakeFileCause& take) {
+void add_point_order_cause(const MeasuredShape& shape, const ShapeCheck& check,
+                           const TakeFileCause& take) {
   constexpr Eigen::Index most_points = 300;
   constexpr double clearly_shorter = 0.95;
   const Eigen::Index count = shape.points.cols();
@@ -260,7 +261,7 @@ void add_order(const MeasuredShape& shape, const ShapeCheck& check, const TakeFi
   std::pair<double, std::vector<Eigen::Index>> shortest{clearly_shorter * check.polyline_length_m,
                                                         {}};
   for (Eigen::Index start = 0; start < count; ++start) {
-    auto way = way_from(start, shape.points);
+    auto way = greedy_path_from(start, shape.points);
     if (way.first < shortest.first) shortest = std::move(way);
   }
   std::vector<Eigen::Index>& order = shortest.second;
@@ -268,20 +269,21 @@ void add_order(const MeasuredShape& shape, const ShapeCheck& check, const TakeFi
   if (order.front() > order.back()) std::ranges::reverse(order);
   MeasuredShape sorted = shape;
   std::string numbers;
-  constexpr Eigen::Index most_told = 6;
+  constexpr Eigen::Index most_listed = 6;
   for (Eigen::Index i = 0; i < count; ++i) {
     const Eigen::Index from = order[static_cast<std::size_t>(i)];
     sorted.points.col(i) = shape.points.col(from);
-    if (i < most_told) numbers += fmt::format("{}{}", i == 0 ? "" : ", ", from + 1);
+    if (i < most_listed) numbers += fmt::format("{}{}", i == 0 ? "" : ", ", from + 1);
   }
-  if (count > most_told) numbers += ", ..";
+  if (count > most_listed) numbers += ", ..";
   take({fmt::format("the file's points are out of order: along the rod they are {}", numbers),
         std::move(sorted)});
 }
 
 /// Adds points at an end that lead away from the rod, and a file that covers only a part of the
 /// rod.
-void add_lengths(const MeasuredShape& shape, const ShapeCheck& check, const TakeFileCause& take) {
+void add_extent_causes(const MeasuredShape& shape, const ShapeCheck& check,
+                       const TakeFileCause& take) {
   const std::vector<double>& s = check.reference.arc_length;
   // A shorter part lies close to the rod for almost any file.
   constexpr double least_part = 0.05;
@@ -304,9 +306,9 @@ void add_lengths(const MeasuredShape& shape, const ShapeCheck& check, const Take
 /// Adds the scale that makes the file as long as the rod, about the file's origin and about the
 /// rod's first point, which an extension of the rod leaves where it is.
 void add_scale(const MeasuredShape& shape, const ShapeCheck& check, const TakeFileCause& take) {
-  constexpr double same = 1e-3;
+  constexpr double tolerance = 1e-3;
   const double stretch = check.polyline_length_m / check.stretched_length_m;
-  if (!(stretch > 0) || std::abs(stretch - 1) <= same) return;
+  if (!(stretch > 0) || std::abs(stretch - 1) <= tolerance) return;
   const bool may_be_strain = stretch > 0.5 && stretch < 2;
   const std::string words =
       may_be_strain
@@ -330,9 +332,9 @@ void add_scale(const MeasuredShape& shape, const ShapeCheck& check, const TakeFi
 /// Returns the rotation R for which the points R from[i] are nearest to the points to[i]; where the
 /// points do not determine it, the one with the smallest angle.
 Eigen::Matrix3d nearest_rotation(const Eigen::Matrix3Xd& from, const Eigen::Matrix3Xd& to) {
-  constexpr double towards_none = 1e-9;
+  constexpr double regularisation = 1e-9;
   Eigen::Matrix3d moments = to * from.transpose();
-  moments += towards_none * from.norm() * to.norm() * Eigen::Matrix3d::Identity();
+  moments += regularisation * from.norm() * to.norm() * Eigen::Matrix3d::Identity();
   const Eigen::JacobiSVD<Eigen::Matrix3d> svd(moments, Eigen::ComputeFullU | Eigen::ComputeFullV);
   const double sign = (svd.matrixU() * svd.matrixV().transpose()).determinant() < 0 ? -1 : 1;
   return svd.matrixU() * Eigen::Vector3d(1, 1, sign).asDiagonal() * svd.matrixV().transpose();
@@ -345,7 +347,7 @@ void add_rotations(const Scene& scene, const MeasuredShape& shape, const ShapeCh
   std::vector<double> s = check.alignment.shape.arc_length;
   // Nearest points on the rod are biased if the file is rotated; lengths along the file are not.
   if (shape.arc_length.empty() && !is_short(check.polyline_length_m, check.stretched_length_m)) {
-    s = lengths_along(points);
+    s = arc_lengths_along(points);
     const double scale = check.length_m / s.back();
     for (double& at : s) at = std::min(at * scale, check.length_m);
   }
@@ -362,7 +364,7 @@ void add_rotations(const Scene& scene, const MeasuredShape& shape, const ShapeCh
                                error.angle() * 180 / std::numbers::pi, i + 1),
           .shape = std::move(right),
           .numbers = 3,  // the rotation vector, in any plane
-          .same_as = "rotated file"});
+          .cause_group = "rotated file"});
   }
 }
 
@@ -373,8 +375,8 @@ void try_joint_errors(const Scene& scene, const MeasuredShape& shape, double len
   combine_errors(scene, shape, length, true, take);
 }
 
-std::string missing_words(const std::vector<double>& s, const Eigen::Matrix3Xd& points,
-                          double length) {
+std::string missing_ends_clause(const std::vector<double>& s, const Eigen::Matrix3Xd& points,
+                                double length) {
   if (!lacks_one_segment(points, length)) {
     return fmt::format("the file is a part of the rod, s = {:.4g} to {:.4g} m: cut off", s.front(),
                        s.back());
@@ -387,8 +389,8 @@ std::string missing_words(const std::vector<double>& s, const Eigen::Matrix3Xd& 
   return fmt::format("{}: the file has s = {:.4g} to {:.4g} m", what, s.front(), s.back());
 }
 
-std::string origin_words(const Eigen::Vector3d& way) {
-  const Eigen::Vector3d mm = way * 1e3;
+std::string origin_clause(const Eigen::Vector3d& translation) {
+  const Eigen::Vector3d mm = translation * 1e3;
   const double large = mm.norm();
   return fmt::format("the file has another origin, [{:.4g}, {:.4g}, {:.4g}] mm away",
                      shown(mm.x(), large), shown(mm.y(), large), shown(mm.z(), large));
@@ -403,8 +405,8 @@ void try_single_errors(const Scene& scene, const MeasuredShape& shape, const Sha
     take({"the file's arc lengths count from the other end", against});
   }
   add_pixels(scene, shape, take);
-  add_order(shape, check, take);
-  add_lengths(shape, check, take);
+  add_point_order_cause(shape, check, take);
+  add_extent_causes(shape, check, take);
   add_scale(shape, check, take);
   add_rotations(scene, shape, check, take);
 }

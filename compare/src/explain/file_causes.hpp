@@ -24,7 +24,7 @@ struct FileCause {
   /// Whether the shape is compared only with the part of the rod that it covers.
   bool part = false;
   /// Name of a group of causes of which only the best is reported; empty: reported by itself.
-  std::string same_as = {};
+  std::string cause_group = {};
 };
 
 /// Receives a possible error of a file.
@@ -32,12 +32,12 @@ using TakeFileCause = std::function<void(const FileCause&)>;
 
 /// Returns a clause that states which ends of the rod a shape lacks.
 /// @param s  arc lengths of the points on the rod [m];  @param points  [m], 3 x M
-[[nodiscard]] std::string missing_words(const std::vector<double>& s,
-                                        const Eigen::Matrix3Xd& points, double length);
+[[nodiscard]] std::string missing_ends_clause(const std::vector<double>& s,
+                                              const Eigen::Matrix3Xd& points, double length);
 
 /// Returns a clause that states the origin of the file.
 /// @param way  displacement from the file's points to the scene's [m]
-[[nodiscard]] std::string origin_words(const Eigen::Vector3d& way);
+[[nodiscard]] std::string origin_clause(const Eigen::Vector3d& way);
 
 /// Calls `take` for all possible single errors of a file whose frame is stated to be the scene's.
 void try_single_errors(const Scene& scene, const MeasuredShape& shape, const ShapeCheck& check,
@@ -49,7 +49,7 @@ void try_single_errors(const Scene& scene, const MeasuredShape& shape, const Sha
 [[nodiscard]] std::optional<Explanation> noise_of_points(const Shape& shape,
                                                          const energy_model::Equilibrium& rod);
 
-/// Group name (FileCause::same_as) of combinations of several errors.
+/// Group name (FileCause::cause_group) of combinations of several errors.
 inline constexpr const char* joint_cause = "several";
 
 /// Calls `take` for all combinations of several errors of a file: its unit, axes, origin and

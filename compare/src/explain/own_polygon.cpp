@@ -37,11 +37,11 @@ using energy_model::JointLaw;
 constexpr JointLaw hookean_laws[] = {JointLaw::linear, JointLaw::hooke, JointLaw::binormal};
 
 /// Ratio by which the other laws must be farther from the points for one to be identified.
-constexpr double showing = 2;
+constexpr double law_identification_ratio = 2;
 
 /// Distance, divided by the length, below which no law is identified: the chain's own stretch
 /// contributes as much.
-constexpr double least_showing = 1e-5;
+constexpr double least_identifying_distance = 1e-5;
 
 /// Largest strain of a segment of a chain at rest [-]. Segments stretch by a millionth; a crushed
 /// or torn one belongs to a polygon that is not the chain.
@@ -52,10 +52,10 @@ constexpr double largest_chain_strain = 1e-3;
 constexpr double same_arc_length = largest_chain_strain;
 
 /// Largest distance of a clamp from the middle of the segment that it holds, in half segments.
-constexpr double same_middle = 0.1;
+constexpr double middle_tolerance = 0.1;
 
 /// Position at which a gripper holds a chain.
-struct HeldAt {
+struct HoldLocation {
   Eigen::Index point = 0;  ///< index of the held point, or of the first point of the segment
   bool segment = false;    ///< a clamp holds the middle of the segment after the point
 };
@@ -63,17 +63,17 @@ struct HeldAt {
 /// Returns the position at which a gripper holds the chain; std::nullopt if it holds neither a
 /// point nor, as a clamp, the middle of a segment.
 /// @param s  arc lengths of the chain's points [m]
-std::optional<HeldAt> held_at(const Gripper& gripper, const std::vector<double>& s) {
+std::optional<HoldLocation> hold_location(const Gripper& gripper, const std::vector<double>& s) {
   const auto above = std::upper_bound(s.begin() + 1, s.end() - 1, gripper.at);
   const Eigen::Index right = above - s.begin();
   const double before = gripper.at - s[static_cast<std::size_t>(right - 1)];
   const double behind = *above - gripper.at;
   if (std::min(before, behind) < same_arc_length * s.back()) {
-    return HeldAt{before < behind ? right - 1 : right};
+    return HoldLocation{before < behind ? right - 1 : right};
   }
-  const bool is_middle = std::abs(before - behind) < same_middle * (before + behind);
+  const bool is_middle = std::abs(before - behind) < middle_tolerance * (before + behind);
   if (!gripper.direction || !is_middle) return std::nullopt;
-  return HeldAt{right - 1, true};
+  return HoldLocation{right - 1, true};
 }
 
 /// Returns the lengths of the segments: the distances of the points, scaled so that between
@@ -87,7 +87,7 @@ Eigen::VectorXd rest_lengths(const Scene& scene, const Eigen::Matrix3Xd& points)
   s.back() = scene.length;  // removes rounding
   std::vector<std::pair<double, double>> known = {{0, 0}, {scene.length, scene.length}};
   for (const Gripper& gripper : scene.grippers) {
-    const std::optional<HeldAt> held = held_at(gripper, s);
+    const std::optional<HoldLocation> held = hold_location(gripper, s);
     if (!held || gripper.at <= 0 || gripper.at >= scene.length) continue;
     const auto i = static_cast<std::size_t>(held->point);
     known.emplace_back(held->segment ? (s[i] + s[i + 1]) / 2 : s[i], gripper.at);
@@ -134,8 +134,8 @@ class Chain {
   }
 
   /// Whether the grippers of this scene can hold the chain; prepares its problem.
-  [[nodiscard]] bool exists() {
-    if (!hold() || !parts_points()) return false;
+  [[nodiscard]] bool prepare_if_holdable() {
+    if (!hold() || !keeps_points_apart()) return false;
     lay_out();
     add_twists();
     return true;
@@ -166,9 +166,11 @@ class Chain {
   }
 
   /// Returns the chain as a result. @param rest  its points at rest
-  [[nodiscard]] OwnPolygon polygon(Eigen::Matrix3Xd rest, double stiffness, JointLaw law) const {
+  [[nodiscard]] CandidateChain polygon(Eigen::Matrix3Xd rest, double stiffness,
+                                       JointLaw law) const {
     const Eigen::Matrix3Xd gaps = this->gaps(rest);
-    OwnPolygon result{.clamp = clamp_, .rms_m = rms_of(gaps), .stiffness = stiffness, .law = law};
+    CandidateChain result{
+        .clamp = clamp_, .rms_m = rms_of(gaps), .stiffness = stiffness, .law = law};
     result.max_m = std::sqrt(gaps.colwise().squaredNorm().maxCoeff());
     result.rest = {s_, std::move(rest)};
     return result;
@@ -185,7 +187,7 @@ class Chain {
   }
 
   /// Sets the joints and springs of a result, or c_b of the paper's law.
-  void add_springs(OwnPolygon& polygon) const {
+  void add_springs(CandidateChain& polygon) const {
     if (polygon.law == JointLaw::paper) {
       polygon.paper_stiffness = polygon.stiffness * problem_.stiffness;
       return;
@@ -213,12 +215,12 @@ class Chain {
   /// Holds the segment that a clamp inside the rod holds: the one whose middle is at the clamp, or,
   /// if welded to a point, the one that begins there.
   /// @return whether the chain's kind of clamp is possible there; a hinge is not
-  [[nodiscard]] bool hold_inside(const Gripper& clamp, const HeldAt& at) {
+  [[nodiscard]] bool constrain_inner_segment(const Gripper& clamp, const HoldLocation& at) {
     if (clamp_ != (at.segment ? ChainClamp::middle : ChainClamp::welded)) return false;
     has_inner_clamp_ = true;
     for (const Eigen::Index i : {at.point, at.point + 1}) {
-      const double way = s_[static_cast<std::size_t>(i)] - clamp.at;
-      problem_.held.push_back({i + before_, clamp.position + way * *clamp.direction});
+      const double shift = s_[static_cast<std::size_t>(i)] - clamp.at;
+      problem_.held.push_back({i + before_, clamp.position + shift * *clamp.direction});
     }
     return true;
   }
@@ -226,7 +228,7 @@ class Chain {
   /// Returns the clamp that holds this point of the file; null if none does.
   [[nodiscard]] const Gripper* clamp_at(Eigen::Index point) const {
     const auto clamp = std::ranges::find_if(scene_.grippers, [&](const Gripper& gripper) {
-      const std::optional<HeldAt> held = held_at(gripper, s_);
+      const std::optional<HoldLocation> held = hold_location(gripper, s_);
       return gripper.direction && held && !held->segment && held->point == point;
     });
     return clamp == scene_.grippers.end() ? nullptr : &*clamp;
@@ -234,21 +236,21 @@ class Chain {
 
   /// Holds the second point of the segment at a clamp at an end of the rod: the file's own segment,
   /// or a segment beyond the rod if the chain has a hinge at the clamp.
-  void hold_direction(const Gripper& clamp, bool at_start) {
+  void constrain_end_direction(const Gripper& clamp, bool at_start) {
     const Eigen::Index n = inner_.size();
     const bool hinged = clamp_ == ChainClamp::hinge;
     const double h = at_start ? inner_[0] : inner_[n - 1];
-    const double way = at_start != hinged ? h : -h;
+    const double shift = at_start != hinged ? h : -h;
     const Eigen::Index beyond = at_start ? 0 : n + before_ + 1;
     const Eigen::Index inside = at_start ? 1 : n - 1;
-    problem_.held.push_back({hinged ? beyond : inside, clamp.position + way * *clamp.direction});
+    problem_.held.push_back({hinged ? beyond : inside, clamp.position + shift * *clamp.direction});
   }
 
   /// Whether the segment at each clamp of an end is half as long as the next one.
   [[nodiscard]] bool ends_in_half_segments() const {
     const Eigen::Index n = inner_.size();
-    const auto is_half = [](double end, double beside) {
-      return std::abs(end / beside - 0.5) < 0.1;
+    const auto is_half = [](double end, double neighbour) {
+      return std::abs(end / neighbour - 0.5) < 0.1;
     };
     return (!is_clamped_at_start_ || is_half(inner_[0], inner_[1])) &&
            (!is_clamped_at_end_ || is_half(inner_[n - 1], inner_[n - 2]));
@@ -265,24 +267,24 @@ class Chain {
     before_ = is_clamped_at_start_ && hinged ? 1 : 0;
     after_ = is_clamped_at_end_ && hinged ? 1 : 0;
     for (const Gripper& gripper : scene_.grippers) {
-      const std::optional<HeldAt> at = held_at(gripper, s_);
+      const std::optional<HoldLocation> at = hold_location(gripper, s_);
       if (!at) return false;
       if (gripper.direction && &gripper != first && &gripper != last) {
-        if (!hold_inside(gripper, *at)) return false;
+        if (!constrain_inner_segment(gripper, *at)) return false;
       } else {
         problem_.held.push_back({at->point + before_, gripper.position});
       }
     }
-    if (first != nullptr) hold_direction(*first, true);
-    if (last != nullptr) hold_direction(*last, false);
-    if (holds_twice()) return false;
+    if (first != nullptr) constrain_end_direction(*first, true);
+    if (last != nullptr) constrain_end_direction(*last, false);
+    if (has_doubly_held_point()) return false;
     // Chains held only by pins are equal with all three clamps, so only one of them counts.
     if (first == nullptr && last == nullptr) return hinged || has_inner_clamp_;
     return clamp_ != ChainClamp::middle || ends_in_half_segments();
   }
 
   /// Whether two grippers hold the same point.
-  [[nodiscard]] bool holds_twice() const {
+  [[nodiscard]] bool has_doubly_held_point() const {
     std::vector<Eigen::Index> points;
     for (const energy_model::HeldPoint& held : problem_.held) points.push_back(held.point);
     std::ranges::sort(points);
@@ -290,7 +292,7 @@ class Chain {
   }
 
   /// Whether no held point is moved to where its neighbour in the file is.
-  [[nodiscard]] bool parts_points() const { return chord_lengths(start()).minCoeff() > 0; }
+  [[nodiscard]] bool keeps_points_apart() const { return chord_lengths(start()).minCoeff() > 0; }
 
   void lay_out() {
     const Eigen::Index n = inner_.size();
@@ -300,7 +302,7 @@ class Chain {
     const double stiffness = scene_.bending_stiffness();
     const double l = scene_.length;
     const double force =
-        stiffness / (l * l) + scene_.weight_per_length().norm() * l + scene_.total_of_loads();
+        stiffness / (l * l) + scene_.weight_per_length().norm() * l + scene_.total_load_magnitude();
     // The segments stretch by about a millionth.
     problem_.stretch_stiffness = 1e6 * force;
     problem_.stiffness = stiffness;
@@ -318,7 +320,7 @@ class Chain {
     weights_.middleCols(before_, n + 1) = forces.weights;
     problem_.node_forces = weights_;
     problem_.node_forces.middleCols(before_, n + 1) += forces.loads;
-    const Eigen::VectorXd h = whole_lengths();
+    const Eigen::VectorXd h = whole_segment_lengths();
     for (const std::size_t i : obstacles_in_reach(scene_)) {
       const Obstacle& obstacle = scene_.obstacles[i];
       problem_.obstacles.push_back({obstacle.body, problem_.stretch_stiffness / h.maxCoeff(),
@@ -330,7 +332,7 @@ class Chain {
 
   /// Returns the lengths of the segments. The file has half of the whole segment that a clamp at an
   /// end of the rod holds in its middle.
-  [[nodiscard]] Eigen::VectorXd whole_lengths() const {
+  [[nodiscard]] Eigen::VectorXd whole_segment_lengths() const {
     Eigen::VectorXd h = problem_.rest_lengths;
     if (clamp_ == ChainClamp::middle && is_clamped_at_start_) h[0] *= 2;
     if (clamp_ == ChainClamp::middle && is_clamped_at_end_) h[h.size() - 1] *= 2;
@@ -339,10 +341,10 @@ class Chain {
 
   /// Adds the twist between clamps that hold frames, with the turns of the points.
   void add_twists() {
-    if (!scene_.holds_twist()) return;
+    if (!scene_.prescribes_twist()) return;
     const energy_model::Problem rod = scene_problem(scene_);
     const std::vector<std::size_t> framed = framed_grippers(scene_);
-    const Eigen::VectorXd h = whole_lengths();
+    const Eigen::VectorXd h = whole_segment_lengths();
     for (std::size_t k = 1; k < framed.size(); ++k) {
       const force_model::TwistedSpan span =
           held_span(rod, framed[k - 1], framed[k], held_segment(framed[k - 1]),
@@ -361,7 +363,7 @@ class Chain {
 
   /// Returns the first point of the segment that a clamp holds.
   [[nodiscard]] Eigen::Index held_segment(std::size_t gripper) const {
-    const HeldAt at = *held_at(scene_.grippers[gripper], s_);
+    const HoldLocation at = *hold_location(scene_.grippers[gripper], s_);
     const Eigen::Index last = problem_.rest_lengths.size() - 1;
     if (at.segment) return at.point;
     return at.point == 0 ? 0 : std::min(at.point + before_, last);
@@ -388,29 +390,30 @@ class Chain {
 
 /// Returns the chain with the springs that fit best, by Gauss-Newton steps along the logarithm of
 /// their stiffness; std::nullopt if a chain does not come to rest.
-std::optional<OwnPolygon> fitted(const Chain& chain, Eigen::Matrix3Xd rest, JointLaw law) {
+std::optional<CandidateChain> fitted(const Chain& chain, Eigen::Matrix3Xd rest, JointLaw law) {
   constexpr int most_steps = 10;
-  constexpr double stride = 0.01;
+  constexpr double difference_step = 0.01;
   constexpr double found = 1e-4;
   double log_factor = 0;
   for (int step = 0; step < most_steps; ++step) {
-    const std::optional<Eigen::Matrix3Xd> beside =
-        chain.at_rest(std::exp(log_factor + stride), law);
-    if (!beside) return std::nullopt;
+    const std::optional<Eigen::Matrix3Xd> perturbed =
+        chain.at_rest(std::exp(log_factor + difference_step), law);
+    if (!perturbed) return std::nullopt;
     const Eigen::Matrix3Xd gaps = chain.gaps(rest);
-    const Eigen::Matrix3Xd slope = (chain.gaps(*beside) - gaps) / stride;
+    const Eigen::Matrix3Xd slope = (chain.gaps(*perturbed) - gaps) / difference_step;
     if (!(slope.squaredNorm() > 0)) break;  // a straight chain does not depend on its springs
-    const double way = std::clamp(-slope.cwiseProduct(gaps).sum() / slope.squaredNorm(), -1.0, 1.0);
-    std::optional<Eigen::Matrix3Xd> next = chain.at_rest(std::exp(log_factor + way), law);
+    const double shift =
+        std::clamp(-slope.cwiseProduct(gaps).sum() / slope.squaredNorm(), -1.0, 1.0);
+    std::optional<Eigen::Matrix3Xd> next = chain.at_rest(std::exp(log_factor + shift), law);
     if (!next || !(chain.rms_of(chain.gaps(*next)) < chain.rms_of(gaps))) break;
-    log_factor += way;
+    log_factor += shift;
     rest = std::move(*next);
-    if (std::abs(way) < found) break;
+    if (std::abs(shift) < found) break;
   }
   return chain.polygon(std::move(rest), std::exp(log_factor), law);
 }
 
-std::optional<OwnPolygon> with_law(const Chain& chain, Springs springs, JointLaw law) {
+std::optional<CandidateChain> with_law(const Chain& chain, Springs springs, JointLaw law) {
   std::optional<Eigen::Matrix3Xd> rest = chain.at_rest(1, law);
   if (!rest) return std::nullopt;
   if (springs == Springs::fitted) return fitted(chain, std::move(*rest), law);
@@ -418,18 +421,19 @@ std::optional<OwnPolygon> with_law(const Chain& chain, Springs springs, JointLaw
 }
 
 /// Returns the chain with the law that fits best, or with the first law if none is identified.
-std::optional<OwnPolygon> with_best_law(const Chain& chain, Springs springs, double length) {
-  std::vector<OwnPolygon> found;
+std::optional<CandidateChain> with_best_law(const Chain& chain, Springs springs, double length) {
+  std::vector<CandidateChain> found;
   for (const JointLaw law : hookean_laws) {
-    if (std::optional<OwnPolygon> one = with_law(chain, springs, law)) found.push_back(*one);
+    if (std::optional<CandidateChain> one = with_law(chain, springs, law)) found.push_back(*one);
   }
   if (found.empty()) return std::nullopt;
-  const OwnPolygon first = found.front();
-  std::ranges::stable_sort(found, {}, &OwnPolygon::rms_m);
-  OwnPolygon& best = found.front();
+  const CandidateChain first = found.front();
+  std::ranges::stable_sort(found, {}, &CandidateChain::rms_m);
+  CandidateChain& best = found.front();
   const double next = found.size() > 1 ? found[1].rms_m : 0;  // distance with the second-best law
-  best.law_shows = next > showing * best.rms_m && next > least_showing * length;
-  return best.law_shows ? best : first;
+  best.is_law_identified =
+      next > law_identification_ratio * best.rms_m && next > least_identifying_distance * length;
+  return best.is_law_identified ? best : first;
 }
 
 }  // namespace
@@ -441,31 +445,32 @@ std::string words_of(ChainClamp clamp, Eigen::Index segments) {
                                                    : ", clamped in the middle of a segment");
 }
 
-std::string law_words(const OwnPolygon& chain) {
-  if (!chain.law_shows) return "";
+std::string law_words(const CandidateChain& chain) {
+  if (!chain.is_law_identified) return "";
   return chain.law == JointLaw::linear  ? "linear in the angle"
          : chain.law == JointLaw::hooke ? "linear in 2 tan(angle/2)"
                                         : "those of discrete elastic rods";
 }
 
-std::string and_springs(const OwnPolygon& chain) {
+std::string springs_clause(const CandidateChain& chain) {
   const std::string law = law_words(chain);
   return law.empty() ? "" : ", its springs EI/h and " + law;
 }
 
-std::vector<OwnPolygon> own_polygons(const Scene& scene, const Shape& shape, Springs springs,
-                                     std::optional<JointLaw> law, LastPoint last) {
+std::vector<CandidateChain> candidate_chains(const Scene& scene, const Shape& shape,
+                                             Springs springs, std::optional<JointLaw> law,
+                                             LastPoint last) {
   const Eigen::Index segments = shape.points.cols() - 1;
   const bool plain =
       scene.sections.empty() && !scene.has_material_directors() && !scene.has_couples();
-  const bool has_law = law != JointLaw::paper || !scene.holds_twist();
+  const bool has_law = law != JointLaw::paper || !scene.prescribes_twist();
   if (!plain || !has_law || segments < 4 || segments > most_segments) return {};
-  std::vector<OwnPolygon> found;
+  std::vector<CandidateChain> found;
   for (const ChainClamp clamp : {ChainClamp::hinge, ChainClamp::welded, ChainClamp::middle}) {
     Chain chain(scene, shape.points, rest_lengths(scene, shape.points), clamp, last);
-    if (!chain.exists()) continue;
+    if (!chain.prepare_if_holdable()) continue;
     if (law == JointLaw::paper) chain.set_paper_law();
-    const std::optional<OwnPolygon> one =
+    const std::optional<CandidateChain> one =
         law ? with_law(chain, springs, *law) : with_best_law(chain, springs, scene.length);
     if (!one) continue;
     found.push_back(*one);
@@ -474,15 +479,16 @@ std::vector<OwnPolygon> own_polygons(const Scene& scene, const Shape& shape, Spr
   return found;
 }
 
-std::optional<Shape> chain_at_rest(const Scene& scene, const Shape& start, const OwnPolygon& like) {
+std::optional<Shape> chain_at_rest(const Scene& scene, const Shape& start,
+                                   const CandidateChain& candidate) {
   const auto n = static_cast<Eigen::Index>(start.arc_length.size()) - 1;
   const Eigen::Map<const Eigen::VectorXd> s(start.arc_length.data(), n + 1);
-  Chain chain(scene, start.points, s.tail(n) - s.head(n), like.clamp, LastPoint::there);
-  if (!chain.exists()) return std::nullopt;
+  Chain chain(scene, start.points, s.tail(n) - s.head(n), candidate.clamp, LastPoint::there);
+  if (!chain.prepare_if_holdable()) return std::nullopt;
   std::optional<Eigen::Matrix3Xd> rest =
-      chain.at_rest(like.stiffness, like.law, most_evaluations_refined);
+      chain.at_rest(candidate.stiffness, candidate.law, most_evaluations_refined);
   if (!rest) return std::nullopt;
-  return chain.polygon(*std::move(rest), like.stiffness, like.law).rest;
+  return chain.polygon(*std::move(rest), candidate.stiffness, candidate.law).rest;
 }
 
 }  // namespace dlo::compare

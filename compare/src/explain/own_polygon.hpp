@@ -14,8 +14,8 @@ namespace dlo::compare {
 
 /// Stiffness of the springs in the hinges of a chain.
 enum class Springs {
-  as_the_rod,  ///< stiffness EI/h
-  fitted,      ///< the stiffness that fits best
+  rod_stiffness,  ///< stiffness EI/h
+  fitted,         ///< the stiffness that fits best
 };
 
 /// Meaning of the last point of a file.
@@ -27,14 +27,14 @@ enum class LastPoint {
 };
 
 /// A chain of hinges in a scene, whose points may be those of a file.
-struct OwnPolygon {
+struct CandidateChain {
   ChainClamp clamp = ChainClamp::hinge;
   double rms_m = 0;      ///< RMS distance of the file's points from the chain [m]
   double max_m = 0;      ///< largest of these distances [m]
   double stiffness = 1;  ///< stiffness of the springs, divided by EI/h
   energy_model::JointLaw law = energy_model::JointLaw::linear;  ///< joint law of the springs
   /// Whether the law is identified: with the other laws the points are more than twice as far away.
-  bool law_shows = false;
+  bool is_law_identified = false;
   std::vector<double> joints;  ///< arc lengths of the springs [m]
   std::vector<double>
       springs;  ///< stiffness factor times EI, divided by half of both adjacent segments [N m/rad]
@@ -46,11 +46,11 @@ struct OwnPolygon {
 [[nodiscard]] std::string words_of(ChainClamp clamp, Eigen::Index segments);
 
 /// Describes the law of a chain's springs; empty if the law is not identified.
-[[nodiscard]] std::string law_words(const OwnPolygon& chain);
+[[nodiscard]] std::string law_words(const CandidateChain& chain);
 
 /// Returns the clause about the springs that follows words_of(); empty if the law is not
 /// identified.
-[[nodiscard]] std::string and_springs(const OwnPolygon& chain);
+[[nodiscard]] std::string springs_clause(const CandidateChain& chain);
 
 /// Returns the chains that may have a file's points as their own, each at rest in the scene with a
 /// spring in each hinge. There are three kinds: with a hinge at the clamp, with the first segment
@@ -63,7 +63,7 @@ struct OwnPolygon {
 /// @param shape  in the scene's frame, along the whole rod
 /// @param law  joint law of the springs; empty: the one of the Hookean laws that fits best, or
 /// springs linear in the angle if the law is not identified
-[[nodiscard]] std::vector<OwnPolygon> own_polygons(
+[[nodiscard]] std::vector<CandidateChain> candidate_chains(
     const Scene& scene, const Shape& shape, Springs springs,
     std::optional<energy_model::JointLaw> law = std::nullopt, LastPoint last = LastPoint::there);
 
@@ -72,6 +72,6 @@ struct OwnPolygon {
 /// no equilibrium.
 /// @param start  initial guess; its arc lengths are those of the chain's points
 [[nodiscard]] std::optional<Shape> chain_at_rest(const Scene& scene, const Shape& start,
-                                                 const OwnPolygon& like);
+                                                 const CandidateChain& like);
 
 }  // namespace dlo::compare

@@ -25,22 +25,22 @@ constexpr double least_gain = 0.1;
 /// the one to which the compared equilibrium leads, else the one that a search finds. If the cause
 /// changes how the rod is held, the one that a search finds is used if it is nearer to the shape.
 /// Returns false if there is no equilibrium.
-bool goes_to_state(const SceneCause& cause, const energy_model::Equilibrium& rod,
-                   FittedRods& rods) {
-  if (cause.start.isZero()) rods.go_on_from({rod});
+bool start_at_equilibrium(const SceneCause& cause, const energy_model::Equilibrium& rod,
+                          FittedRods& rods) {
+  if (cause.start.isZero()) rods.set_initial_rods({rod});
   FittedRods::State state = rods.state(cause.start);
-  if (cause.other_state) {
-    rods.search_next();
+  if (cause.changes_support) {
+    rods.clear_initial_rods();
     FittedRods::State lowest = rods.state(cause.start);
     if (lowest.squares[0] < state.squares[0]) state = std::move(lowest);
   }
-  rods.go_on_from(state.rods);
+  rods.set_initial_rods(state.rods);
   return state.rods[0].has_value();
 }
 
 /// Returns the numbers whose rod is nearest to the shape, and sets `rods` to that rod.
-Eigen::VectorXd best_numbers(const SceneCause& cause, double noise, FittedRods& rods) {
-  if (cause.stride.isZero()) return cause.start;
+Eigen::VectorXd fit_parameters(const SceneCause& cause, double noise, FittedRods& rods) {
+  if (cause.difference_step.isZero()) return cause.start;
   GaussNewton fit(rods, cause.start, {.noise = noise, .last_step = 0.05, .least_gain = least_gain});
   const FittedRods::Rods start = rods.rods();
   try {
@@ -48,7 +48,7 @@ Eigen::VectorXd best_numbers(const SceneCause& cause, double noise, FittedRods& 
   } catch (const ConvergenceError&) {
     // The time limit ends the fit; the numbers so far are used.
   }
-  rods.go_on_from(fit.rods().empty() ? start : fit.rods());
+  rods.set_initial_rods(fit.rods().empty() ? start : fit.rods());
   return fit.values();
 }
 
@@ -60,24 +60,24 @@ using Numbers = Eigen::VectorXd;
 
 /// Returns a cause whose numbers change the scene. @param stride, longest_step  of every number
 template <typename Change, typename Words>
-SceneCause cause_of(const Scene& scene, const Numbers& start, double stride, double longest_step,
-                    const Change& change, const Words& words) {
+SceneCause make_cause(const Scene& scene, const Numbers& start, double difference_step,
+                      double longest_step, const Change& change, const Words& words) {
   const auto changed = [scene, change](const Numbers& p) {
     Scene result = scene;
     change(result, p);
     return result;
   };
-  return {start, Numbers::Constant(start.size(), stride), longest_step, changed, words};
+  return {start, Numbers::Constant(start.size(), difference_step), longest_step, changed, words};
 }
 
 SceneCause stiffness(const Scene& scene) {
-  return cause_of(
+  return make_cause(
       scene, zeros(1), 0.02, 1.5,
       [](Scene& changed, const Numbers& p) { changed.scale_modulus(std::exp(p[0])); },
       [scene](const Scene&, const Numbers& p) {
         std::string text =
             fmt::format("the bending stiffness is {:.3g} times the scene's", std::exp(p[0]));
-        if (is_pulled_by_weight_alone(scene)) {
+        if (is_loaded_by_weight_alone(scene)) {
           text += fmt::format(", or the weight {:.3g} times", std::exp(-p[0]));
         }
         return text;
@@ -85,7 +85,7 @@ SceneCause stiffness(const Scene& scene) {
 }
 
 SceneCause torsional_stiffness(const Scene& scene) {
-  return cause_of(
+  return make_cause(
       scene, zeros(1), 0.05, 1.5,
       [](Scene& changed, const Numbers& p) { changed.scale_torsion(std::exp(p[0])); },
       [](const Scene&, const Numbers& p) {
@@ -97,7 +97,7 @@ SceneCause torsional_stiffness(const Scene& scene) {
 /// @param down  direction at the start of the fit
 SceneCause gravity(const Scene& scene, const Eigen::Vector3d& down) {
   const double size = scene.gravity.norm();
-  return cause_of(
+  return make_cause(
       scene, down * size - scene.gravity, 0.02 * size, size,
       [](Scene& changed, const Numbers& p) { changed.gravity += p; },
       [scene](const Scene& changed, const Numbers&) {
@@ -110,7 +110,7 @@ SceneCause gravity(const Scene& scene, const Eigen::Vector3d& down) {
 
 /// Returns the cause that the rod has the length of the shape, for which nothing is fitted.
 SceneCause length(const Scene& scene, double of_shape) {
-  return cause_of(
+  return make_cause(
       scene, Numbers::Constant(1, std::log(of_shape / scene.length)), 0, 0,
       [](Scene& changed, const Numbers& p) { scale_length(changed, std::exp(p[0])); },
       [scene](const Scene& changed, const Numbers&) {
@@ -121,11 +121,11 @@ SceneCause length(const Scene& scene, double of_shape) {
 /// Returns the cause that a clamp has another direction: in the plane with this normal, or any.
 SceneCause direction(const Scene& scene, std::size_t index,
                      const std::optional<Eigen::Vector3d>& normal) {
-  const Eigen::Matrix3Xd ways = ways_across(*scene.grippers[index].direction, normal);
-  return cause_of(
+  const Eigen::Matrix3Xd ways = rotation_axes(*scene.grippers[index].direction, normal);
+  return make_cause(
       scene, zeros(ways.cols()), 1 * degree, 40 * degree,
       [index, ways](Scene& changed, const Numbers& p) {
-        turn_clamp(changed.grippers[index], ways * p);
+        rotate_clamp(changed.grippers[index], ways * p);
       },
       [index](const Scene& changed, const Numbers& p) {
         const Eigen::Vector3d& to = *changed.grippers[index].direction;
@@ -137,16 +137,17 @@ SceneCause direction(const Scene& scene, std::size_t index,
 /// Returns the cause that a gripper has another position: in the plane with this normal, or any.
 SceneCause position(const Scene& scene, std::size_t index,
                     const std::optional<Eigen::Vector3d>& normal) {
-  const Eigen::Matrix3Xd ways = ways_of_place(normal);
-  return cause_of(
+  const Eigen::Matrix3Xd ways = translation_directions(normal);
+  return make_cause(
       scene, zeros(ways.cols()), 1e-3 * scene.length, 0.2 * scene.length,
       [index, ways](Scene& changed, const Numbers& p) {
         changed.grippers[index].position += ways * p;
       },
       [index, ways](const Scene&, const Numbers& p) {
-        const Eigen::Vector3d way = ways * p * 1e3;
+        const Eigen::Vector3d displacement = ways * p * 1e3;
         return fmt::format("gripper {} is {:.3g} mm away, by [{:.3g}, {:.3g}, {:.3g}] mm",
-                           index + 1, way.norm(), way.x(), way.y(), way.z());
+                           index + 1, displacement.norm(), displacement.x(), displacement.y(),
+                           displacement.z());
       });
 }
 
@@ -168,8 +169,8 @@ Eigen::Vector3d tangent_at(const Shape& shape, double at) {
 }
 
 /// Returns the cause that pins hold directions; the fit starts at the directions of the shape.
-SceneCause clamps_for_pins(const Scene& scene, const std::vector<std::size_t>& pins,
-                           const Shape& shape, const std::optional<Eigen::Vector3d>& normal) {
+SceneCause pins_to_clamps_cause(const Scene& scene, const std::vector<std::size_t>& pins,
+                                const Shape& shape, const std::optional<Eigen::Vector3d>& normal) {
   Scene held = scene;
   std::vector<Eigen::Matrix3Xd> ways;
   ways.reserve(pins.size());
@@ -178,13 +179,13 @@ SceneCause clamps_for_pins(const Scene& scene, const std::vector<std::size_t>& p
     Eigen::Vector3d along = tangent_at(shape, scene.grippers[i].at);
     if (normal) along = (along - along.dot(*normal) * *normal).normalized();
     held.grippers[i].direction = along;
-    ways.push_back(ways_across(along, normal));
+    ways.push_back(rotation_axes(along, normal));
     count += ways.back().cols();
   }
   const auto turn = [pins, ways](Scene& changed, const Numbers& p) {
     Eigen::Index first = 0;
     for (std::size_t k = 0; k < pins.size(); ++k) {
-      turn_clamp(changed.grippers[pins[k]], ways[k] * p.segment(first, ways[k].cols()));
+      rotate_clamp(changed.grippers[pins[k]], ways[k] * p.segment(first, ways[k].cols()));
       first += ways[k].cols();
     }
   };
@@ -201,13 +202,13 @@ SceneCause clamps_for_pins(const Scene& scene, const std::vector<std::size_t>& p
     return fmt::format("the pins hold their directions, {}: clamps, not pins",
                        fmt::join(directions, ", "));
   };
-  SceneCause cause = cause_of(held, zeros(count), 1 * degree, 40 * degree, turn, words);
-  cause.other_state = true;
+  SceneCause cause = make_cause(held, zeros(count), 1 * degree, 40 * degree, turn, words);
+  cause.changes_support = true;
   return cause;
 }
 
 /// Returns the cause that clamps let the rod rotate.
-SceneCause pins_for_clamps(const Scene& scene, const std::vector<std::size_t>& clamps) {
+SceneCause clamps_to_pins_cause(const Scene& scene, const std::vector<std::size_t>& clamps) {
   Scene free = scene;
   for (const std::size_t i : clamps) {
     free.grippers[i].direction.reset();
@@ -217,33 +218,34 @@ SceneCause pins_for_clamps(const Scene& scene, const std::vector<std::size_t>& c
       clamps.size() == 1
           ? fmt::format("gripper {} lets the rod rotate: a pin, not a clamp", clamps[0] + 1)
           : "the clamps let the rod rotate: pins, not clamps";
-  SceneCause cause = cause_of(
+  SceneCause cause = make_cause(
       free, zeros(0), 0, 0, [](Scene&, const Numbers&) {},
       [words](const Scene&, const Numbers&) { return words; });
-  cause.other_state = true;
+  cause.changes_support = true;
   return cause;
 }
 
 /// Adds the exchange of pin and clamp for each gripper, then for all pins and for all clamps.
-void add_other_holds(std::vector<SceneCause>& causes, const Scene& scene, const Shape& shape,
-                     const std::optional<Eigen::Vector3d>& normal) {
+void add_support_causes(std::vector<SceneCause>& causes, const Scene& scene, const Shape& shape,
+                        const std::optional<Eigen::Vector3d>& normal) {
   std::vector<std::size_t> pins;
   std::vector<std::size_t> clamps;
   for (std::size_t i = 0; i < scene.grippers.size(); ++i) {
     (scene.grippers[i].direction ? clamps : pins).push_back(i);
   }
-  for (const std::size_t i : clamps) causes.push_back(pins_for_clamps(scene, {i}));
-  if (clamps.size() > 1) causes.push_back(pins_for_clamps(scene, clamps));
-  for (const std::size_t i : pins) causes.push_back(clamps_for_pins(scene, {i}, shape, normal));
-  if (pins.size() > 1) causes.push_back(clamps_for_pins(scene, pins, shape, normal));
+  for (const std::size_t i : clamps) causes.push_back(clamps_to_pins_cause(scene, {i}));
+  if (clamps.size() > 1) causes.push_back(clamps_to_pins_cause(scene, clamps));
+  for (const std::size_t i : pins)
+    causes.push_back(pins_to_clamps_cause(scene, {i}, shape, normal));
+  if (pins.size() > 1) causes.push_back(pins_to_clamps_cause(scene, pins, shape, normal));
 }
 
 SceneCause natural_curvature(const Scene& scene) {
   const double unit = 1 / scene.length;
-  return cause_of(
+  return make_cause(
       scene, zeros(1), 0.02 * unit, 3 * unit,
       [](Scene& changed, const Numbers& p) {
-        bend_by_nature(changed, 0, {0, p[0]});
+        increase_natural_curvature(changed, 0, {0, p[0]});
       },
       [scene](const Scene&, const Numbers& p) {
         return fmt::format("the rod is intrinsically curved, {:.3g} 1/m{}",
@@ -253,7 +255,7 @@ SceneCause natural_curvature(const Scene& scene) {
 }
 
 SceneCause twist(const Scene& scene, std::size_t last) {
-  return cause_of(
+  return make_cause(
       scene, Numbers::Constant(1, 60 * degree), 2 * degree, 60 * degree,
       [last](Scene& changed, const Numbers& p) {
         for (Gripper& gripper : changed.grippers) {
@@ -270,7 +272,7 @@ SceneCause twist(const Scene& scene, std::size_t last) {
 }
 
 /// Adds another gravity, fitted from the scene's and from four directions perpendicular to it.
-void add_other_gravity(std::vector<SceneCause>& causes, const Scene& scene) {
+void add_gravity_causes(std::vector<SceneCause>& causes, const Scene& scene) {
   const Eigen::Vector3d down = scene.gravity.normalized();
   const Eigen::Vector3d across = down.unitOrthogonal();
   const std::size_t first = causes.size();
@@ -279,7 +281,7 @@ void add_other_gravity(std::vector<SceneCause>& causes, const Scene& scene) {
     causes.push_back(gravity(scene, other));
     causes.push_back(gravity(scene, -other));
   }
-  for (std::size_t i = first; i < causes.size(); ++i) causes[i].same_as = "gravity";
+  for (std::size_t i = first; i < causes.size(); ++i) causes[i].cause_group = "gravity";
 }
 
 }  // namespace
@@ -297,26 +299,26 @@ std::optional<FittedCause> fit_cause(const SceneCause& cause, const MeasuredShap
                            .flat = FlatShapes::measured},
                           timer);
   std::vector<Unknown> unknowns;
-  for (const double stride : cause.stride) {
-    unknowns.push_back({.stride = stride, .longest_step = cause.longest_step});
+  for (const double difference_step : cause.difference_step) {
+    unknowns.push_back({.difference_step = difference_step, .longest_step = cause.longest_step});
   }
   FittedRods rods(
       measured, [&](std::size_t, const Eigen::VectorXd& p) { return cause.changed(p); }, unknowns);
-  if (!goes_to_state(cause, rod, rods)) return std::nullopt;
-  const Eigen::VectorXd numbers = best_numbers(cause, noise, rods);
+  if (!start_at_equilibrium(cause, rod, rods)) return std::nullopt;
+  const Eigen::VectorXd numbers = fit_parameters(cause, noise, rods);
   return FittedCause{numbers, *rods.rods()[0]};
 }
 
-bool is_pulled_by_weight_alone(const Scene& scene) {
+bool is_loaded_by_weight_alone(const Scene& scene) {
   return scene.loads.empty() && scene.distributed_loads.empty() && !scene.drag &&
          scene.weight_per_length().norm() > 0;
 }
 
-std::vector<SceneCause> scene_causes(const Scene& scene, const Shape& shape, double length_of_shape,
-                                     bool flat) {
+std::vector<SceneCause> scene_causes(const Scene& scene, const Shape& shape,
+                                     double estimated_shape_length, bool flat) {
   std::vector<SceneCause> causes = {stiffness(scene)};
   // GJ affects the shape only of a rod that twists.
-  const bool twists = scene.holds_twist() || scene.has_material_directors();
+  const bool twists = scene.prescribes_twist() || scene.has_material_directors();
   if (!flat && twists && scene.twisting_stiffness() > 0) {
     causes.push_back(torsional_stiffness(scene));
   }
@@ -327,14 +329,14 @@ std::vector<SceneCause> scene_causes(const Scene& scene, const Shape& shape, dou
     ++clamps;
     if (clamps == 1 || scene.grippers[i].at > scene.grippers[last].at) last = i;
   }
-  const bool says_which_way = scene.planar() || (clamps > 0 && scene.has_material_directors());
-  if (clamps > 0 && says_which_way && !scene.holds_twist()) {
+  const bool has_defined_roll = scene.planar() || (clamps > 0 && scene.has_material_directors());
+  if (clamps > 0 && has_defined_roll && !scene.prescribes_twist()) {
     causes.push_back(natural_curvature(scene));
   }
   // A different length is visible in the points.
-  constexpr double seen = 0.005;
-  const double longer = std::abs(std::log(length_of_shape / scene.length));
-  if (longer > seen && longer < 1) causes.push_back(length(scene, length_of_shape));
+  constexpr double noticeable = 0.005;
+  const double longer = std::abs(std::log(estimated_shape_length / scene.length));
+  if (longer > noticeable && longer < 1) causes.push_back(length(scene, estimated_shape_length));
   const std::optional<Eigen::Vector3d> normal = flat ? scene.plane_normal() : std::nullopt;
   for (std::size_t i = 0; i < scene.grippers.size(); ++i) {
     const Gripper& gripper = scene.grippers[i];
@@ -346,8 +348,8 @@ std::vector<SceneCause> scene_causes(const Scene& scene, const Shape& shape, dou
       causes.push_back(position(scene, i, normal));
     }
   }
-  add_other_holds(causes, scene, shape, normal);
-  if (scene.gravity.norm() > 0) add_other_gravity(causes, scene);
+  add_support_causes(causes, scene, shape, normal);
+  if (scene.gravity.norm() > 0) add_gravity_causes(causes, scene);
   const bool round = !scene.has_material_directors();
   if (!flat && clamps == scene.grippers.size() && clamps > 1 && round) {
     causes.push_back(twist(scene, last));

@@ -17,24 +17,26 @@ using Eigen::Index;
 using Eigen::Vector3d;
 
 /// Largest relative difference between the segments of a chain and those of the model.
-constexpr double like_the_model = 0.02;
+constexpr double segment_length_tolerance = 0.02;
 
-bool are_starts(const Eigen::Matrix3Xd& points, double segment) {
-  return (chord_lengths(points).array() - segment).abs().maxCoeff() <= like_the_model * segment;
+bool are_segment_starts(const Eigen::Matrix3Xd& points, double segment) {
+  return (chord_lengths(points).array() - segment).abs().maxCoeff() <=
+         segment_length_tolerance * segment;
 }
 
 /// Returns the position of the gripper at the rod's end if it is one segment away from `last`; else
 /// std::nullopt.
-std::optional<Vector3d> held_end(const Scene& scene, const Vector3d& last, double segment) {
+std::optional<Vector3d> gripped_end(const Scene& scene, const Vector3d& last, double segment) {
   for (const Gripper& gripper : scene.grippers) {
     const bool at_end = std::abs(gripper.at - scene.length) < 1e-6 * scene.length;
-    const double way = (gripper.position - last).norm();
-    if (at_end && std::abs(way - segment) <= like_the_model * segment) return gripper.position;
+    const double distance = (gripper.position - last).norm();
+    if (at_end && std::abs(distance - segment) <= segment_length_tolerance * segment)
+      return gripper.position;
   }
   return std::nullopt;
 }
 
-Vector3d free_end(const Eigen::Matrix3Xd& points, double segment) {
+Vector3d extrapolated_end(const Eigen::Matrix3Xd& points, double segment) {
   const Index n = points.cols();
   const Vector3d before = points.col(n - 2) - points.col(n - 3);
   const Vector3d last = points.col(n - 1) - points.col(n - 2);
@@ -46,38 +48,39 @@ Vector3d free_end(const Eigen::Matrix3Xd& points, double segment) {
 
 /// Returns the number of grippers that hold an end of the rod, and the number of those that hold it
 /// at `point`.
-std::pair<int, int> held_ends(const Scene& scene, const Vector3d& point, double segment) {
+std::pair<int, int> count_end_grippers(const Scene& scene, const Vector3d& point, double segment) {
   std::pair<int, int> count;
   for (const Gripper& gripper : scene.grippers) {
     if (std::min(gripper.at, scene.length - gripper.at) > 1e-6 * scene.length) continue;
     ++count.first;
-    if ((gripper.position - point).norm() <= like_the_model * segment) ++count.second;
+    if ((gripper.position - point).norm() <= segment_length_tolerance * segment) ++count.second;
   }
   return count;
 }
 
 /// Returns the shape with the end of its last segment added.
-MeasuredShape with_end(const Scene& scene, MeasuredShape shape, double segment) {
+MeasuredShape with_last_segment_end(const Scene& scene, MeasuredShape shape, double segment) {
   const Index n = shape.points.cols();
   const Vector3d last = shape.points.col(n - 1);
-  const std::optional<Vector3d> held = held_end(scene, last, segment);
-  const Vector3d end = held ? *held : free_end(shape.points, segment);
+  const std::optional<Vector3d> end_position = gripped_end(scene, last, segment);
+  const Vector3d end = end_position ? *end_position : extrapolated_end(shape.points, segment);
   shape.points.conservativeResize(Eigen::NoChange, n + 1);
   shape.points.col(n) = end;
   shape.d1.resize(3, 0);
   shape.notes.push_back(
       fmt::format("its {} points are the start points of the segments; the end of the last segment "
                   "is appended, {}",
-                  n, held ? "where a gripper holds it" : "extrapolated"));
+                  n, end_position ? "where a gripper holds it" : "extrapolated"));
   return shape;
 }
 
 /// Returns the bodies of the cable if the shape has all bodies of the model; otherwise the shape.
-MeasuredShape cable_of_model(const ModelChain& model, const MeasuredShape& shape, double segment) {
+MeasuredShape cable_points(const ModelChain& model, const MeasuredShape& shape, double segment) {
   if (shape.points.cols() != model.bodies || model.bodies <= model.segments) return shape;
   const Eigen::Matrix3Xd chain = shape.points.middleCols(model.first_body, model.segments);
   // A chain with its end may have as many points as the model has bodies.
-  if (are_starts(shape.points, segment) || !are_starts(chain, segment)) return shape;
+  if (are_segment_starts(shape.points, segment) || !are_segment_starts(chain, segment))
+    return shape;
   MeasuredShape cable = shape;
   cable.points = chain;
   cable.notes.push_back(fmt::format("of all {} bodies only those of the cable are used, {} to {}",
@@ -88,15 +91,15 @@ MeasuredShape cable_of_model(const ModelChain& model, const MeasuredShape& shape
 
 }  // namespace
 
-MeasuredShape whole_of_segment_starts(const Scene& scene, const MeasuredShape& shape,
+MeasuredShape complete_segment_starts(const Scene& scene, const MeasuredShape& shape,
                                       PoseFreedom pose) {
   if (!shape.arc_length.empty()) return shape;
   if (scene.model) {
     const double segment = scene.length / static_cast<double>(scene.model->segments);
-    const MeasuredShape cable = cable_of_model(*scene.model, shape, segment);
+    const MeasuredShape cable = cable_points(*scene.model, shape, segment);
     const bool has_all = cable.points.cols() == scene.model->segments;
-    if (has_all && cable.points.cols() > 2 && are_starts(cable.points, segment)) {
-      return with_end(scene, cable, segment);
+    if (has_all && cable.points.cols() > 2 && are_segment_starts(cable.points, segment)) {
+      return with_last_segment_end(scene, cable, segment);
     }
     return shape;
   }
@@ -104,11 +107,14 @@ MeasuredShape whole_of_segment_starts(const Scene& scene, const MeasuredShape& s
   const double segment = scene.length / static_cast<double>(n);
   // With many points, those of a whole rod have nearly the same distances.
   const bool lacks_end = n > 3 && lacks_one_segment(shape.points, scene.length);
-  if (pose != PoseFreedom::known || !lacks_end || !are_starts(shape.points, segment)) return shape;
+  if (pose != PoseFreedom::known || !lacks_end || !are_segment_starts(shape.points, segment))
+    return shape;
   const Vector3d last = shape.points.rightCols<1>();
-  const auto [ends, begins] = held_ends(scene, shape.points.leftCols<1>(), segment);
-  if (begins == 0 || held_ends(scene, last, segment).second > 0) return shape;
-  return ends == 1 || held_end(scene, last, segment) ? with_end(scene, shape, segment) : shape;
+  const auto [ends, begins] = count_end_grippers(scene, shape.points.leftCols<1>(), segment);
+  if (begins == 0 || count_end_grippers(scene, last, segment).second > 0) return shape;
+  return ends == 1 || gripped_end(scene, last, segment)
+             ? with_last_segment_end(scene, shape, segment)
+             : shape;
 }
 
 }  // namespace dlo::compare

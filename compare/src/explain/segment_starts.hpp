@@ -15,7 +15,7 @@ namespace dlo::compare {
 /// held, and of all bodies of the model those of the chain are used. Notes state what was done.
 /// @param pose  unknown coordinates of the shape's frame; if it is not the scene's frame, only
 /// points of a model are completed
-[[nodiscard]] MeasuredShape whole_of_segment_starts(const Scene& scene, const MeasuredShape& shape,
+[[nodiscard]] MeasuredShape complete_segment_starts(const Scene& scene, const MeasuredShape& shape,
                                                     PoseFreedom pose = PoseFreedom::known);
 
 }  // namespace dlo::compare

@@ -78,10 +78,10 @@ std::string inline_svg(const std::string& svg, const std::string& name, const st
     const std::size_t to = body.find(close);
     if (from < to && to != std::string::npos) body.erase(from, to + close.size() - from);
   }
-  body = with_places(body, {{" id='", " id='" + name + "-"},
-                            {" id=\"", " id=\"" + name + "-"},
-                            {"href='#", "href='#" + name + "-"},
-                            {"href=\"#", "href=\"#" + name + "-"}});
+  body = replace_placeholders(body, {{" id='", " id='" + name + "-"},
+                                     {" id=\"", " id=\"" + name + "-"},
+                                     {"href='#", "href='#" + name + "-"},
+                                     {"href=\"#", "href=\"#" + name + "-"}});
   body.replace(body.find('>'), 1,
                fmt::format(">\n<title id=\"{}-title\">{}</title>", name, escape_markup(title)));
   return fmt::format("<svg role=\"img\" aria-labelledby=\"{}-title\"{}</svg>\n", name, body);

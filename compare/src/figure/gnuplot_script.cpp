@@ -58,23 +58,23 @@ int height_of(const PictureRow& row) {
 /// gnuplot's point types of the marks, in the order of Mark.
 constexpr int point_types[] = {0, 2, 4, 5, 6, 7, 8, 10, 12};
 
-std::string line_style(const Look& look) {
+std::string line_style(const CurveStyle& look) {
   return fmt::format("linewidth {} dashtype {}", look.width, static_cast<int>(look.dashes) + 1);
 }
 
-std::string mark_style(const Look& look) {
+std::string mark_style(const CurveStyle& look) {
   return fmt::format("pointtype {} pointsize {}", point_types[static_cast<std::size_t>(look.mark)],
                      look.mark_size);
 }
 
-std::string fill_style(const Look& look) {
+std::string fill_style(const CurveStyle& look) {
   return fmt::format("fillstyle solid 1 {} fillcolor rgb '{}'",
                      look.width > 0 ? fmt::format("border linecolor rgb '{}'", look.colour)
                                     : std::string("noborder"),
                      look.fill);
 }
 
-std::string style_of(const Look& look) {
+std::string style_of(const CurveStyle& look) {
   if (!look.fill.empty()) return "with filledcurves closed " + fill_style(look);
   const bool has_line = look.width > 0;
   const bool has_marks = look.mark != Mark::none;

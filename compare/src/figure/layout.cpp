@@ -10,12 +10,12 @@ namespace {
 
 /// Style of a curve. The colours follow Okabe and Ito, but are darker, so that they are visible
 /// inverted as well. Each has its own marks, so that curves can be distinguished without colour.
-struct CurveLook {
+struct CurveStyleEntry {
   const char* colour;
   Mark mark;
   Dashes dashes;
 };
-constexpr CurveLook looks[curve_colours] = {
+constexpr CurveStyleEntry styles[curve_colours] = {
     {"#0059A8", Mark::circle, Dashes::solid},
     {"#B34700", Mark::open_square, Dashes::dashed},
     {"#00704F", Mark::triangle, Dashes::dotted},
@@ -24,7 +24,7 @@ constexpr CurveLook looks[curve_colours] = {
     {"#404040", Mark::cross, Dashes::dashed}};
 
 using PlotRange = std::array<double, 2>;
-constexpr PlotRange nothing = {HUGE_VAL, -HUGE_VAL};
+constexpr PlotRange empty_range = {HUGE_VAL, -HUGE_VAL};
 
 void widen(PlotRange& range, const std::vector<double>& values) {
   for (const double value : values) {
@@ -53,13 +53,13 @@ void set_limits(PlotAxis& axis, const PlotRange& drawn) {
   if (!(*axis.to > *axis.from)) axis.to = *axis.from + 1;
 }
 
-void put_at_edge(double& value, const PlotAxis& axis) {
+void move_infinity_to_edge(double& value, const PlotAxis& axis) {
   if (std::isinf(value)) value = value > 0 ? *axis.to : *axis.from;
 }
 
 void lay_out(PlotAxis& axis, std::vector<PlottedCurve>& curves,
              std::vector<double> PlottedCurve::*values) {
-  PlotRange drawn = nothing;
+  PlotRange drawn = empty_range;
   for (PlottedCurve& curve : curves) {
     for (double& value : curve.*values) {
       // A logarithmic axis cannot show it.
@@ -69,11 +69,11 @@ void lay_out(PlotAxis& axis, std::vector<PlottedCurve>& curves,
   }
   set_limits(axis, drawn);
   for (PlottedCurve& curve : curves) {
-    for (double& value : curve.*values) put_at_edge(value, axis);
+    for (double& value : curve.*values) move_infinity_to_edge(value, axis);
   }
 }
 
-bool shows_something(const PlottedCurve& curve) {
+bool has_finite_point(const PlottedCurve& curve) {
   for (std::size_t i = 0; i < curve.x.size(); ++i) {
     if (!std::isnan(curve.x[i]) && !std::isnan(curve.y[i])) return true;
   }
@@ -82,25 +82,25 @@ bool shows_something(const PlottedCurve& curve) {
 
 }  // namespace
 
-Look curve_look(std::size_t i) {
-  const CurveLook& look = looks[i % curve_colours];
-  return {.colour = look.colour, .dashes = look.dashes, .mark = look.mark, .mark_size = 0.8};
+CurveStyle curve_style(std::size_t i) {
+  const CurveStyleEntry& style = styles[i % curve_colours];
+  return {.colour = style.colour, .dashes = style.dashes, .mark = style.mark, .mark_size = 0.8};
 }
 
-Look curve_line(std::size_t i) {
-  Look look = curve_look(i);
-  look.mark = Mark::none;
-  return look;
+CurveStyle curve_line(std::size_t i) {
+  CurveStyle style = curve_style(i);
+  style.mark = Mark::none;
+  return style;
 }
 
-Look curve_marks(std::size_t i) {
-  Look look = curve_look(i);
-  look.width = 0;
-  return look;
+CurveStyle curve_marks(std::size_t i) {
+  CurveStyle style = curve_style(i);
+  style.width = 0;
+  return style;
 }
 
 std::pair<double, double> Cells::range() const {
-  PlotRange range = nothing;
+  PlotRange range = empty_range;
   widen(range, values);
   return {range[0], range[1]};
 }
@@ -120,11 +120,11 @@ Panel laid_out(Panel panel) {
   if (panel.z) lay_out(*panel.z, panel.curves, &PlottedCurve::z);
   panel.curves.erase(
       std::remove_if(panel.curves.begin(), panel.curves.end(),
-                     [](const PlottedCurve& curve) { return !shows_something(curve); }),
+                     [](const PlottedCurve& curve) { return !has_finite_point(curve); }),
       panel.curves.end());
   for (Text& text : panel.texts) {
-    put_at_edge(text.x, panel.x);
-    put_at_edge(text.y, panel.y);
+    move_infinity_to_edge(text.x, panel.x);
+    move_infinity_to_edge(text.y, panel.y);
   }
   return panel;
 }

@@ -14,7 +14,7 @@ enum class Mark { none, cross, open_square, square, circle, dot, triangle, down_
 enum class Dashes { solid, dashed, dotted, dash_dotted, dash_dot_dotted };
 
 /// Style of a curve.
-struct Look {
+struct CurveStyle {
   std::string colour = "#000000";  ///< "#RRGGBB"
   double width = 1;                ///< line width; 0: no line
   Dashes dashes = Dashes::solid;
@@ -28,18 +28,18 @@ inline constexpr std::size_t curve_colours = 6;
 
 /// Returns the style of the i-th curve, with a line and marks. Its colour can be distinguished by
 /// colour-blind readers, and its marks differ too. Styles repeat after curve_colours.
-[[nodiscard]] Look curve_look(std::size_t i);
-/// Returns curve_look(i) without marks.
-[[nodiscard]] Look curve_line(std::size_t i);
-/// Returns curve_look(i) without a line.
-[[nodiscard]] Look curve_marks(std::size_t i);
+[[nodiscard]] CurveStyle curve_style(std::size_t i);
+/// Returns curve_style(i) without marks.
+[[nodiscard]] CurveStyle curve_line(std::size_t i);
+/// Returns curve_style(i) without a line.
+[[nodiscard]] CurveStyle curve_marks(std::size_t i);
 
 /// Points of one style in a plot. Infinite coordinates are drawn at the plot's edge. At NaN a line
 /// is interrupted.
 struct PlottedCurve {
   std::string id;     ///< name of the curve in the script
   std::string title;  ///< text in the legend; empty: no entry
-  Look look;
+  CurveStyle look;
   std::vector<double> x, y;
   std::vector<double> z;  ///< only for a plot in space
 };

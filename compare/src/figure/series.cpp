@@ -29,17 +29,18 @@ std::optional<Eigen::Vector3d> plane_through(const Scene& scene, const Eigen::Ma
   constexpr double thick = 1e-6;  // in lengths
   std::optional<Eigen::Vector3d> normal = scene.plane_normal();
   if (!normal) return std::nullopt;
-  const Eigen::Vector3d held = scene.grippers.front().position;
+  const Eigen::Vector3d grip_position = scene.grippers.front().position;
   for (const auto& point : points.colwise()) {
-    if (!(std::abs(normal->dot(point - held)) <= thick * scene.length)) return std::nullopt;
+    if (!(std::abs(normal->dot(point - grip_position)) <= thick * scene.length))
+      return std::nullopt;
   }
   return normal;
 }
 
 /// Returns the plane's normal with the sign that points to the viewer of a plot, so that positive
 /// curvature bends to the left; std::nullopt if the points leave the plane.
-std::optional<Eigen::Vector3d> normal_to_reader(const Scene& scene, const View& view,
-                                                const Eigen::Matrix3Xd& points) {
+std::optional<Eigen::Vector3d> normal_towards_viewer(const Scene& scene, const View& view,
+                                                     const Eigen::Matrix3Xd& points) {
   std::optional<Eigen::Vector3d> normal = plane_through(scene, points);
   if (!normal) return std::nullopt;
   const Eigen::Vector3d reader =
@@ -78,7 +79,7 @@ Series within(Series outline, const View& view, const std::array<double, 2>& low
   return outline;
 }
 
-Eigen::Matrix3Xd side_by_side(const std::vector<const Eigen::Matrix3Xd*>& parts) {
+Eigen::Matrix3Xd concatenated(const std::vector<const Eigen::Matrix3Xd*>& parts) {
   Eigen::Matrix3Xd all(3, 0);
   for (const Eigen::Matrix3Xd* part : parts) {
     all.conservativeResize(3, all.cols() + part->cols());
@@ -116,7 +117,7 @@ Series rod_series(const Reference& rod, const Scene& scene, const View& view) {
   series.arc_length = equal_arc_lengths(scene.length, curve_samples);
   const energy_model::Samples samples = rod(series.arc_length);
   series.points = samples.points;
-  const std::optional<Eigen::Vector3d> normal = normal_to_reader(scene, view, series.points);
+  const std::optional<Eigen::Vector3d> normal = normal_towards_viewer(scene, view, series.points);
   for (Eigen::Index i = 0; i < samples.points.cols(); ++i) {
     const Eigen::Vector3d tangent = samples.tangents.col(i);
     series.curvature.push_back(
@@ -127,7 +128,7 @@ Series rod_series(const Reference& rod, const Scene& scene, const View& view) {
 
 Series polygon_series(const Shape& shape, const Scene& scene, const View& view) {
   Series series{.id = "force", .points = shape.points, .arc_length = shape.arc_length};
-  const std::optional<Eigen::Vector3d> normal = normal_to_reader(scene, view, series.points);
+  const std::optional<Eigen::Vector3d> normal = normal_towards_viewer(scene, view, series.points);
   series.curvature.assign(shape.arc_length.size(), NAN);
   for (std::size_t i = 1; i + 1 < series.curvature.size(); ++i) {
     series.curvature[i] = signed_curvature(normal, joint_curvature(shape, i));
@@ -135,7 +136,7 @@ Series polygon_series(const Shape& shape, const Scene& scene, const View& view) 
   return series;
 }
 
-std::optional<Series> unbent_series(const Scene& scene) {
+std::optional<Series> straight_rod_series(const Scene& scene) {
   const auto straight = straight_rod(scene, {0, scene.length});
   if (!straight) return std::nullopt;
   return Series{.id = "unbent",
@@ -198,18 +199,18 @@ std::vector<Series> obstacle_series(const Scene& scene, const std::vector<View>&
       const obstacle::Body& body = scene.obstacles[i].body;
       // The outline extends beyond every edge of a plot, which is no larger than the rod's reach.
       const double far = 10 * (scene.length + (body.centre() - middle).norm());
-      const Eigen::Matrix2Xd seen = obstacle::outline(body, right, up, far);
-      if (seen.cols() == 0) continue;
+      const Eigen::Matrix2Xd visible = obstacle::outline(body, right, up, far);
+      if (visible.cols() == 0) continue;
       Series series{.id = fmt::format("obstacle_{}_{}{}", i + 1, axis_names[views[v].right],
                                       axis_names[views[v].up]),
                     .title = titled ? "" : "obstacles, where the rod's axis cannot be",
                     .look = {.colour = "#8A8A8A", .fill = "#E4E4E4"},
                     .view = static_cast<int>(v)};
       titled = true;
-      series.points = right * seen.row(0) + up * seen.row(1);
+      series.points = right * visible.row(0) + up * visible.row(1);
       series.points += (Eigen::Vector3d::Ones() - right - up).cwiseProduct(body.centre()) *
-                       Eigen::RowVectorXd::Ones(seen.cols());
-      series.arc_length.assign(static_cast<std::size_t>(seen.cols()), NAN);
+                       Eigen::RowVectorXd::Ones(visible.cols());
+      series.arc_length.assign(static_cast<std::size_t>(visible.cols()), NAN);
       all.push_back(std::move(series));
     }
   }

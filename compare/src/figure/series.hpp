@@ -22,7 +22,7 @@ inline constexpr const char* axis_names = "xyz";
 struct Series {
   std::string id;     ///< name of the curve in the script
   std::string title;  ///< text in the legend; empty: no entry
-  Look look;
+  CurveStyle look;
   Eigen::Matrix3Xd points;  ///< [m]; a column of NaN interrupts the line
   std::vector<double> arc_length;
   std::vector<double> curvature;  ///< empty if not shown; NaN at the ends of polygons
@@ -48,7 +48,7 @@ struct Drawing {
                             const std::array<double, 2>& high);
 
 /// Returns the points of all parts in one matrix.
-[[nodiscard]] Eigen::Matrix3Xd side_by_side(const std::vector<const Eigen::Matrix3Xd*>& parts);
+[[nodiscard]] Eigen::Matrix3Xd concatenated(const std::vector<const Eigen::Matrix3Xd*>& parts);
 
 /// Whether points are in the plane that the scene has. A rod may have left it by buckling.
 /// @param points  points of the rod [m]
@@ -67,7 +67,7 @@ struct Drawing {
 [[nodiscard]] Series polygon_series(const Shape& shape, const Scene& scene, const View& view);
 
 /// Returns the straight rod of a scene with a single clamp; std::nullopt for other scenes.
-[[nodiscard]] std::optional<Series> unbent_series(const Scene& scene);
+[[nodiscard]] std::optional<Series> straight_rod_series(const Scene& scene);
 
 /// Returns grippers as points, and for each clamp a short line along its direction.
 [[nodiscard]] std::vector<Series> gripper_series(const Scene& scene);

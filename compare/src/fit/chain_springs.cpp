@@ -16,8 +16,8 @@ namespace dlo::compare {
 namespace {
 
 /// Returns points of a rod, the joints of a chain, whose distances have given ratios.
-Shape points_apart(const energy_model::Equilibrium& rod, double length,
-                   const Eigen::VectorXd& shares) {
+Shape points_with_distance_ratios(const energy_model::Equilibrium& rod, double length,
+                                  const Eigen::VectorXd& shares) {
   constexpr int most_rounds = 8;
   Eigen::VectorXd parts = shares * (length / shares.sum());
   Shape shape;
@@ -45,24 +45,24 @@ bool has_clamp_at(const Scene& scene, double at) {
 /// @param h  length of a whole segment; the mean if segments are unequal [m]
 std::vector<ChainSprings> springs_of(const Scene& scene, const energy_model::Equilibrium& rod,
                                      const Eigen::VectorXd& shares, double h) {
-  const Shape joints = points_apart(rod, scene.length, shares);
-  const std::vector<OwnPolygon> binormal =
-      own_polygons(scene, joints, Springs::fitted, energy_model::JointLaw::binormal);
+  const Shape joints = points_with_distance_ratios(rod, scene.length, shares);
+  const std::vector<CandidateChain> binormal =
+      candidate_chains(scene, joints, Springs::fitted, energy_model::JointLaw::binormal);
   std::vector<ChainSprings> found;
-  for (const OwnPolygon& chain :
-       own_polygons(scene, joints, Springs::fitted, energy_model::JointLaw::linear)) {
+  for (const CandidateChain& chain :
+       candidate_chains(scene, joints, Springs::fitted, energy_model::JointLaw::linear)) {
     found.push_back({.scene = scene.name,
                      .clamp = chain.clamp,
                      .segments = static_cast<int>(shares.size()),
                      .segment_length = h,
                      .stiffness = chain.stiffness * scene.bending_stiffness() / h,
-                     .over_rod = chain.stiffness,
+                     .stiffness_ratio = chain.stiffness,
                      .rms_m = chain.rms_m});
     ChainSprings& own = found.back();
     for (std::size_t i = 0; i < chain.joints.size(); ++i) {
       own.joints.push_back({.at = chain.joints[i], .stiffness = chain.springs[i]});
     }
-    for (const OwnPolygon& other : binormal) {
+    for (const CandidateChain& other : binormal) {
       if (other.clamp != chain.clamp) continue;
       own.binormal_stiffness = other.stiffness * scene.bending_stiffness() / h;
       for (std::size_t i = 0; i < own.joints.size(); ++i) {
@@ -75,12 +75,12 @@ std::vector<ChainSprings> springs_of(const Scene& scene, const energy_model::Equ
 
 /// Returns the shares of segments with given lengths.
 /// @throws InputError in the cases of chain_springs()
-Eigen::VectorXd shares_of(const Scene& scene, const std::vector<double>& lengths) {
-  constexpr std::size_t fewest = 4;
+Eigen::VectorXd segment_shares(const Scene& scene, const std::vector<double>& lengths) {
+  constexpr std::size_t least_count = 4;
   constexpr std::size_t most = 200;
-  if (lengths.size() < fewest || lengths.size() > most) {
+  if (lengths.size() < least_count || lengths.size() > most) {
     throw InputError(fmt::format("{}: a chain of {} segments (allowed: {} to {})", scene.file,
-                                 lengths.size(), fewest, most));
+                                 lengths.size(), least_count, most));
   }
   double sum = 0;
   for (const double part : lengths) {
@@ -124,7 +124,7 @@ std::vector<ChainSprings> chain_springs(const Scene& scene, int segments,
 
 std::vector<ChainSprings> chain_springs(const Scene& scene, const std::vector<double>& lengths,
                                         const SolveOptions& options) {
-  const Eigen::VectorXd shares = shares_of(scene, lengths);
+  const Eigen::VectorXd shares = segment_shares(scene, lengths);
   const energy_model::Equilibrium rod = solve_reference(scene, options);
   const double mean = scene.length / static_cast<double>(lengths.size());
   std::vector<ChainSprings> found = springs_of(scene, rod, shares, mean);

@@ -19,19 +19,19 @@ namespace {
 
 /// Default tolerance of clamp directions that belong to one shape alone, and default scatter
 /// between shapes [rad].
-constexpr double own_tolerance = 5 * std::numbers::pi / 180;
+constexpr double shape_clamp_tolerance = 5 * std::numbers::pi / 180;
 /// Relative difference of predictions up to which they count as equal, and fewer numbers are
 /// chosen.
-constexpr double as_well = 0.01;
+constexpr double equal_prediction_tolerance = 0.01;
 /// Accuracy of predictions, divided by the length: shapes are not measured better, so smaller
 /// predictions count as equal.
-constexpr double exactly = 1e-5;
+constexpr double prediction_accuracy = 1e-5;
 /// Relative difference of predictions up to which options may also be correct.
-constexpr double nearly_as_well = 0.1;
+constexpr double acceptable_prediction_excess = 0.1;
 /// Number of successive terms that do not improve the prediction, after which no more are tried.
-constexpr int most_vain_terms = 2;
+constexpr int most_unsuccessful_terms = 2;
 
-enum class Clamps { as_said, alike, own };
+enum class Clamps { nominal, shared, own };
 
 struct Trial {
   MaterialFitOptions options;
@@ -55,17 +55,17 @@ class OptionsSearch {
       : scenes_(scenes), shapes_(shapes), options_(options) {}
 
   [[nodiscard]] MaterialFit run() {
-    MaterialFitOptions as_said = with_all_outputs(options_of(0, Clamps::as_said));
-    as_said.predict = false;
-    plain_ = fit_from(scenes_, shapes_, as_said, std::nullopt);
+    MaterialFitOptions nominal = with_all_outputs(options_of(0, Clamps::nominal));
+    nominal.predict = false;
+    plain_ = fit_material_from(scenes_, shapes_, nominal, std::nullopt);
     if (!is_systematic(plain_)) plain_ = with_alternatives();
-    start_ = material_of(plain_, scenes_.front());
+    start_ = material_point_of(plain_, scenes_.front());
     if (!is_systematic(plain_)) {
       if (options_.predict) plain_.prediction = plain_prediction();
-      plain_.tried.push_back(described(as_said, plain_));
+      plain_.tried.push_back(described(nominal, plain_));
       return plain_;
     }
-    for (const Clamps clamps : {Clamps::as_said, Clamps::alike, Clamps::own}) try_terms(clamps);
+    for (const Clamps clamps : {Clamps::nominal, Clamps::shared, Clamps::own}) try_terms(clamps);
     if (trials_.empty()) {
       throw ConvergenceError("calibrate: no fit was completed with any of the options tried");
     }
@@ -111,7 +111,7 @@ class OptionsSearch {
     MaterialFitOptions last = with_all_outputs(chosen.options);
     last.predict = false;
     MaterialFit fit =
-        fits_a_wire(last) ? fit_from(scenes_, shapes_, last, start_) : with_alternatives();
+        fits_a_wire(last) ? fit_material_from(scenes_, shapes_, last, start_) : with_alternatives();
     fit.prediction = chosen.fit.prediction;
     return fit;
   }
@@ -121,20 +121,21 @@ class OptionsSearch {
   /// fits or belong to the result.
   [[nodiscard]] MaterialFit with_alternatives() const {
     if (!options_.alternatives) return plain_;
-    MaterialFitOptions as_said = with_all_outputs(options_of(0, Clamps::as_said));
-    as_said.alternatives = true;
-    as_said.predict = false;
-    return fit_from(scenes_, shapes_, as_said, std::nullopt);
+    MaterialFitOptions nominal = with_all_outputs(options_of(0, Clamps::nominal));
+    nominal.alternatives = true;
+    nominal.predict = false;
+    return fit_material_from(scenes_, shapes_, nominal, std::nullopt);
   }
 
   void try_terms(Clamps clamps) {
-    const int terms = std::max(usual_curvature_terms, options_.natural_curvature_terms);
+    const int terms = std::max(default_curvature_terms, options_.natural_curvature_terms);
     double least = INFINITY;
-    int vain = 0;
-    const int most_vain = clamps == Clamps::alike ? terms : most_vain_terms;
-    for (int term = 0; term <= terms && vain < most_vain; ++term) {
+    int useless = 0;
+    const int most_useless = clamps == Clamps::shared ? terms : most_unsuccessful_terms;
+    for (int term = 0; term <= terms && useless < most_useless; ++term) {
       const std::optional<double> prediction = predict(term, clamps);
-      vain = prediction && *prediction < (1 - as_well) * least ? 0 : vain + 1;
+      useless =
+          prediction && *prediction < (1 - equal_prediction_tolerance) * least ? 0 : useless + 1;
       least = std::min(least, prediction.value_or(INFINITY));
     }
   }
@@ -145,7 +146,7 @@ class OptionsSearch {
     options.predict = true;
     try {
       if (fits_a_wire(options)) {
-        trials_.push_back({options, fit_from(scenes_, shapes_, options, start_)});
+        trials_.push_back({options, fit_material_from(scenes_, shapes_, options, start_)});
       } else {
         MaterialFit plain = plain_;
         plain.prediction = plain_prediction();
@@ -161,9 +162,9 @@ class OptionsSearch {
 
   /// Returns the prediction by the fit of the material alone.
   [[nodiscard]] std::optional<Prediction> plain_prediction() const {
-    MaterialFitOptions options = options_of(0, Clamps::as_said);
+    MaterialFitOptions options = options_of(0, Clamps::nominal);
     options.predict = true;
-    return fit_from(scenes_, shapes_, options, start_).prediction;
+    return fit_material_from(scenes_, shapes_, options, start_).prediction;
   }
 
   [[nodiscard]] MaterialFitOptions options_of(int terms, Clamps clamps) const {
@@ -172,29 +173,31 @@ class OptionsSearch {
     options.chain_segments = options.profile_points = 0;
     options.chain_segment_lengths.clear();
     options.natural_curvature_terms = terms;
-    options.shared_clamps = clamps == Clamps::alike;
+    options.shared_clamps = clamps == Clamps::shared;
     if (!options.shared_clamps) {
       options.direction_scatter = 0;
     } else if (!(options.direction_scatter > 0)) {
-      options.direction_scatter = own_tolerance;
+      options.direction_scatter = shape_clamp_tolerance;
     }
     // Without the tilt of the camera, errors of a fixture's clamps cannot be separated from the
     // wire's natural curvature.
     if (options.shared_clamps && !(options.camera_tilt > 0) &&
         why_no_camera_tilt(scenes_, shapes_).empty()) {
-      options.camera_tilt = usual_tilt;
+      options.camera_tilt = default_tilt_tolerance;
     }
-    if (clamps == Clamps::as_said) {
+    if (clamps == Clamps::nominal) {
       options.direction_tolerance = options.position_tolerance = 0;
     } else if (!(options.direction_tolerance > 0)) {
-      options.direction_tolerance = options.shared_clamps ? fixture_tolerance : own_tolerance;
+      options.direction_tolerance =
+          options.shared_clamps ? fixture_tolerance : shape_clamp_tolerance;
     }
     return options;
   }
 
   /// Returns the largest prediction that counts as equal to `prediction`.
   [[nodiscard]] double largest_equal_prediction(double prediction) const {
-    return std::max((1 + as_well) * prediction, exactly * scenes_.front().length);
+    return std::max((1 + equal_prediction_tolerance) * prediction,
+                    prediction_accuracy * scenes_.front().length);
   }
 
   /// Returns the trial with the fewest numbers among those with the best prediction.
@@ -220,12 +223,12 @@ class OptionsSearch {
     const Trial* most = &chosen;
     for (const Trial& trial : trials_) {
       const FittedValue& other = trial.fit.youngs_modulus;
-      if (trial.prediction() > (1 + nearly_as_well) * chosen.prediction()) continue;
+      if (trial.prediction() > (1 + acceptable_prediction_excess) * chosen.prediction()) continue;
       if (!other.low || !other.high) continue;
       if (trial.terms() > most->terms()) most = &trial;
     }
     if (most == &chosen) return;
-    if (include_interval(E, most->fit.youngs_modulus, options_.identified_within)) return;
+    if (include_interval(E, most->fit.youngs_modulus, options_.largest_interval_ratio)) return;
     if (fit.not_identified.empty()) {
       fit.not_identified =
           "options that predict the shapes nearly as well give values that differ too much";

@@ -11,13 +11,13 @@
 namespace dlo::compare {
 
 /// Number of terms of natural curvature that are tried if the options do not request more.
-inline constexpr int usual_curvature_terms = 3;
+inline constexpr int default_curvature_terms = 3;
 /// Default tolerance of the clamp directions of a fixture: they are hardly known [rad].
 inline constexpr double fixture_tolerance = 20 * std::numbers::pi / 180;
 /// Default tolerance of the tilt of a camera [rad].
-inline constexpr double usual_tilt = 2 * std::numbers::pi / 180;
+inline constexpr double default_tilt_tolerance = 2 * std::numbers::pi / 180;
 /// Smallest number of shapes with which each one can be predicted by the others.
-inline constexpr std::size_t fewest_predicted = 3;
+inline constexpr std::size_t least_shapes_for_prediction = 3;
 
 /// Fits the material with the options that predict each shape best from the others: the number of
 /// terms of natural curvature, and whether clamps are as given, misaligned equally in all shapes,

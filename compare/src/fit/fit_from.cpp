@@ -29,31 +29,31 @@ namespace {
 /// and certainly are, systematic. Smooth residuals have some three independent numbers each. Two
 /// shapes with random residuals then exceed the first limit in one case of five and the second in
 /// one of eleven, five shapes in one of a hundred and one of two thousand.
-constexpr double maybe_common = 0.5;
-constexpr double surely_common = 0.7;
+constexpr double possibly_systematic_share = 0.5;
+constexpr double certainly_systematic_share = 0.7;
 /// Largest RMS residual of an alternative that is reported, divided by that of the fit.
-constexpr double worth_naming = 0.7;
+constexpr double reported_residual_ratio = 0.7;
 /// Largest RMS residual of the best alternative that casts doubt on the fit, divided by that of the
 /// fit.
-constexpr double too_much = 0.5;
+constexpr double doubtful_residual_ratio = 0.5;
 /// Smallest reduction of the RMS residual by which an alternative with more parameters must improve
 /// on one that it includes, divided by the residual of the fit.
-constexpr double next_to_nothing = 0.02;
+constexpr double least_residual_reduction = 0.02;
 
 /// Returns the part of the residuals that all shapes have in common; std::nullopt without a plane.
-std::optional<double> common_to_shapes(MaterialProfiles& material, const MaterialPoint& best,
-                                       const std::vector<FittedShape>& shapes) {
+std::optional<double> common_residual_share(MaterialProfiles& material, const MaterialPoint& best,
+                                            const std::vector<FittedShape>& shapes) {
   constexpr int samples = 1001;
   const std::vector<Shape> rods = sampled(material.rods(best), material.scenes(), samples);
   if (rods.size() != shapes.size()) return std::nullopt;
-  std::vector<AcrossRod> across;
+  std::vector<CrossDistances> across;
   std::optional<Eigen::Vector3d> first;
   for (std::size_t i = 0; i < rods.size(); ++i) {
     std::optional<Eigen::Vector3d> normal = material.scenes()[i].plane_normal();
     if (!normal) return std::nullopt;
     if (!first) first = normal;
     if (normal->dot(*first) < 0) *normal *= -1;
-    across.push_back(across_rod(shapes[i].alignment.shape, rods[i], *normal));
+    across.push_back(cross_distances(shapes[i].alignment.shape, rods[i], *normal));
   }
   return common_share(across);
 }
@@ -64,12 +64,12 @@ void add_alternative(const FitAlternative& found, MaterialFit& fit) {
   for (const FitAlternative& one : fit.alternatives) {
     const bool has_more = found.natural_curvature_terms >= one.natural_curvature_terms &&
                           found.direction_tolerance >= one.direction_tolerance;
-    if (has_more && found.rms_m > one.rms_m - next_to_nothing * fit.rms_m) return;
+    if (has_more && found.rms_m > one.rms_m - least_residual_reduction * fit.rms_m) return;
   }
   fit.alternatives.push_back(found);
 }
 
-void try_alternatives(MaterialProfiles& material, const MaterialPoint& best, MaterialFit& fit) {
+void fit_alternatives(MaterialProfiles& material, const MaterialPoint& best, MaterialFit& fit) {
   constexpr double tolerance = 5 * std::numbers::pi / 180;
   MaterialFitOptions options = material.options();
   options.profile_points = 0;
@@ -80,7 +80,7 @@ void try_alternatives(MaterialProfiles& material, const MaterialPoint& best, Mat
     try {
       const MaterialFit other = fit_wire(material.scenes(), material.shapes(), material.measured(),
                                          options, best, material.has_density());
-      if (!(other.rms_m <= worth_naming * fit.rms_m)) continue;
+      if (!(other.rms_m <= reported_residual_ratio * fit.rms_m)) continue;
       add_alternative({terms, directions, other.rms_m, other.youngs_modulus}, fit);
     } catch (const ResultError&) {
       // There is no clamp or plane, the points are too few, a shape was not found, or time is up.
@@ -95,19 +95,20 @@ void try_alternatives(MaterialProfiles& material, const MaterialPoint& best, Mat
 /// by a camera that is not level. One or two shapes do not show whether this is the cause of their
 /// residuals, and E differs if it is. The choice by predictions needs more shapes.
 /// @return whether such a wire has a fit
-bool widen_to_any_wire(MaterialProfiles& material, const MaterialPoint& best, MaterialFit& fit) {
+bool extend_interval_to_curved_wire(MaterialProfiles& material, const MaterialPoint& best,
+                                    MaterialFit& fit) {
   MaterialFitOptions options = material.options();
   options.profile_points = 0;
-  options.natural_curvature_terms = usual_curvature_terms;
+  options.natural_curvature_terms = default_curvature_terms;
   options.direction_tolerance = fixture_tolerance;
   if (why_no_camera_tilt(material.scenes(), material.shapes()).empty()) {
-    options.camera_tilt = usual_tilt;
+    options.camera_tilt = default_tilt_tolerance;
   }
   try {
     const FittedValue other = fit_wire(material.scenes(), material.shapes(), material.measured(),
                                        options, best, material.has_density())
                                   .youngs_modulus;
-    if (include_interval(fit.youngs_modulus, other, options.identified_within)) return true;
+    if (include_interval(fit.youngs_modulus, other, options.largest_interval_ratio)) return true;
   } catch (const ResultError&) {
     // There is no clamp or plane, the points are too few, a shape was not found, or time is up.
     return false;
@@ -124,14 +125,16 @@ bool widen_to_any_wire(MaterialProfiles& material, const MaterialPoint& best, Ma
 /// Returns the warning that residuals are systematic.
 /// @param common  shapes certainly have much of the residuals in common
 /// @param widened  whether the interval is that of any wire
-std::string doubt(const MaterialFit& fit, bool common, bool widened, const char* stiffness) {
+std::string systematic_residual_warning(const MaterialFit& fit, bool common, bool widened,
+                                        const char* stiffness) {
   if (widened) {
     return fmt::format(
         "the residuals are systematic: the interval of {} includes that of an intrinsically curved "
         "wire in misaligned clamps",
         stiffness);
   }
-  if (!fit.alternatives.empty() && fit.alternatives.front().rms_m <= too_much * fit.rms_m) {
+  if (!fit.alternatives.empty() &&
+      fit.alternatives.front().rms_m <= doubtful_residual_ratio * fit.rms_m) {
     return fmt::format(
         "the residuals are systematic: fitting natural curvature or clamps too would leave {:.3g} "
         "mm of {:.3g} mm, so the interval of {} holds only if the rod is intrinsically straight "
@@ -146,14 +149,15 @@ std::string doubt(const MaterialFit& fit, bool common, bool widened, const char*
 }
 
 /// Adds to `not_identified` that the weight is not identifiable: a wrong weight leaves no residual.
-void note_weight(const Scene& scene, MaterialFit& fit) {
-  const char* const heaviness = scene.heaviness().name;
+void note_unidentified_weight(const Scene& scene, MaterialFit& fit) {
+  const char* const mass_parameter = scene.mass_parameter().name;
   const bool first = fit.not_identified.empty();
   fit.not_identified += fmt::format(
       "{}the {}{}: nothing but gravity bends the rod, so a wrong {} leaves no residual and makes "
       "{} wrong by the same factor",
-      first ? "" : "; nor is ", heaviness, first ? " is not identifiable from these shapes" : "",
-      heaviness, scene.stiffness().name);
+      first ? "" : "; nor is ", mass_parameter,
+      first ? " is not identifiable from these shapes" : "", mass_parameter,
+      scene.stiffness().name);
 }
 
 /// Analyses residuals that noise does not explain: adds alternatives that would remove them, and a
@@ -162,29 +166,31 @@ void note_weight(const Scene& scene, MaterialFit& fit) {
 /// @param[in,out] fit  fit of the material alone, complete except for its alternatives
 /// @return whether the interval of E includes that of any intrinsically curved wire in misaligned
 /// clamps
-bool look_for_alternatives(MaterialProfiles& material, const MaterialPoint& best,
-                           MaterialFit& fit) {
+bool analyse_residuals(MaterialProfiles& material, const MaterialPoint& best, MaterialFit& fit) {
   const std::vector<Scene>& scenes = material.scenes();
   if (!(fit.rms_m > MaterialErrors::least_noise(scenes.front()))) return false;
-  fit.common_share = common_to_shapes(material, best, fit.shapes);
-  const double common = fit.common_share ? beyond_chance(*fit.common_share, scenes.size()) : 0;
+  fit.common_share = common_residual_share(material, best, fit.shapes);
+  const double common =
+      fit.common_share ? share_beyond_chance(*fit.common_share, scenes.size()) : 0;
   const bool explained = material.options().noise && fit.warning.empty();
-  if (explained || !(common > maybe_common || fit.correlation)) return false;
-  try_alternatives(material, best, fit);
+  if (explained || !(common > possibly_systematic_share || fit.correlation)) return false;
+  fit_alternatives(material, best, fit);
   // Without forces E has no interval that could be wrong.
-  if (!material.is_forced()) return false;
-  const bool widened = scenes.size() < fewest_predicted && widen_to_any_wire(material, best, fit);
+  if (!material.has_external_force()) return false;
+  const bool widened = scenes.size() < least_shapes_for_prediction &&
+                       extend_interval_to_curved_wire(material, best, fit);
   if (fit.warning.empty()) {
-    fit.warning = doubt(fit, common > surely_common, widened, scenes.front().stiffness().name);
+    fit.warning = systematic_residual_warning(fit, common > certainly_systematic_share, widened,
+                                              scenes.front().stiffness().name);
   }
   const bool weight_alone = std::none_of(scenes.begin(), scenes.end(), has_forces_beside_weight);
   // If the density was requested, this was reported already.
-  if (weight_alone && !material.options().density) note_weight(scenes.front(), fit);
+  if (weight_alone && !material.options().density) note_unidentified_weight(scenes.front(), fit);
   return widened;
 }
 
 /// Result of a profile for one number.
-struct Finding {
+struct ProfileResult {
   LogProfile::Interval interval;  // includes all of `optima`
   std::vector<Minimum> optima;    // between which the shapes do not decide
   FittedValue value;
@@ -193,21 +199,22 @@ struct Finding {
 /// Evaluates a profile.
 /// @param number  see MaterialErrors
 /// @param unit  the scene's value of the number
-Finding finding(LogProfile& profile, const MaterialErrors& errors, std::size_t number, double unit,
-                double identified_within) {
-  Finding result{
-      profile.below(errors.level(number)), profile.minima_below(errors.rival_level(number)), {}};
+ProfileResult evaluate_profile(LogProfile& profile, const MaterialErrors& errors,
+                               std::size_t number, double unit, double largest_interval_ratio) {
+  ProfileResult result{profile.below(errors.level(number)),
+                       profile.minima_below(errors.rival_minimum_level(number)),
+                       {}};
   LogProfile::Interval& interval = result.interval;
   if (!result.optima.empty()) {
     if (interval.low) interval.low = std::min(*interval.low, result.optima.front().x);
     if (interval.high) interval.high = std::max(*interval.high, result.optima.back().x);
   }
-  result.value = fitted_value(profile.minimum().x, interval, unit, identified_within);
+  result.value = fitted_value(profile.minimum().x, interval, unit, largest_interval_ratio);
   return result;
 }
 
-std::string what_is_not_identified(const Finding& found, const NamedValue& of,
-                                   const std::string& name, double identified_within) {
+std::string not_identified_message(const ProfileResult& found, const NamedValue& of,
+                                   const std::string& name, double largest_interval_ratio) {
   const FittedValue& value = found.value;
   if (value.value) return {};
   const std::string so = name + " is not identifiable from these shapes: ";
@@ -218,7 +225,7 @@ std::string what_is_not_identified(const Finding& found, const NamedValue& of,
                            of.value * std::exp(found.optima[i].x));
     }
     return so + fmt::format("{:.4g} to {:.4g} {} fit{} (identified: within a factor of {:g})",
-                            *value.low, *value.high, of.unit, where, identified_within);
+                            *value.low, *value.high, of.unit, where, largest_interval_ratio);
   }
   if (value.low) {
     return so + fmt::format("{} > {:.4g} {}, any larger one fits", name, *value.low, of.unit);
@@ -230,21 +237,21 @@ std::string what_is_not_identified(const Finding& found, const NamedValue& of,
 }
 
 void find_density(MaterialProfiles& material, const MaterialErrors& errors, MaterialFit& fit) {
-  const double within = material.options().identified_within;
-  const NamedValue heaviness = material.scenes().front().heaviness();
+  const double within = material.options().largest_interval_ratio;
+  const NamedValue mass_parameter = material.scenes().front().mass_parameter();
   LogProfile profile = material.over_density();
-  const Finding found = finding(profile, errors, 1, heaviness.value, within);
+  const ProfileResult found = evaluate_profile(profile, errors, 1, mass_parameter.value, within);
   fit.density = found.value;
   if (!fit.not_identified.empty()) return;
-  fit.not_identified =
-      what_is_not_identified(found, heaviness, fmt::format("the {}", heaviness.name), within);
+  fit.not_identified = not_identified_message(found, mass_parameter,
+                                              fmt::format("the {}", mass_parameter.name), within);
 }
 
-std::string why_weight_alone(const Scene& scene) {
+std::string weight_only_message(const Scene& scene) {
   return fmt::format(
       "the {0} is not identifiable from these shapes: nothing but gravity bends the rod, so only "
       "{0} / {1} is; {1} is computed with the {0} of the scene (a known load would identify both)",
-      scene.heaviness().name, scene.stiffness().name);
+      scene.mass_parameter().name, scene.stiffness().name);
 }
 
 void draw_profile(MaterialProfiles& material, const LogProfile::Interval& interval,
@@ -294,15 +301,16 @@ MaterialFit fit_material_alone(MaterialProfiles& material, const MaterialProfile
   errors.write_to(fit);
   const NamedValue stiffness = scenes.front().stiffness();
   LogProfile over_modulus = found.over_modulus;
-  const Finding modulus =
-      finding(over_modulus, errors, 0, stiffness.value, options.identified_within);
+  const ProfileResult modulus =
+      evaluate_profile(over_modulus, errors, 0, stiffness.value, options.largest_interval_ratio);
   fit.youngs_modulus = modulus.value;
   fit.not_identified =
-      what_is_not_identified(modulus, stiffness, stiffness.name, options.identified_within);
+      not_identified_message(modulus, stiffness, stiffness.name, options.largest_interval_ratio);
   if (material.has_density()) find_density(material, errors, fit);
-  if (!material.is_forced()) fit.not_identified = why_stiffness_not_identifiable(scenes.front());
+  if (!material.has_external_force())
+    fit.not_identified = why_stiffness_not_identifiable(scenes.front());
   if (options.density && !material.has_density() && fit.not_identified.empty()) {
-    fit.not_identified = why_weight_alone(scenes.front());
+    fit.not_identified = weight_only_message(scenes.front());
   }
   material.refuse_unverified(
       std::max(errors.level(0), material.has_density() ? errors.level(1) : 0));
@@ -312,8 +320,7 @@ MaterialFit fit_material_alone(MaterialProfiles& material, const MaterialProfile
   for (std::size_t i = 0; i < rods.size() && rods[i]; ++i) {
     fit.shapes.push_back({scenes[i].name, material.measured().alignment(i, *rods[i]), {}});
   }
-  const bool holds_any_wire =
-      options.alternatives && look_for_alternatives(material, found.best, fit);
+  const bool holds_any_wire = options.alternatives && analyse_residuals(material, found.best, fit);
   // See MaterialFit::assumed.
   if (!holds_any_wire) fit.assumed = unfitted_assumptions(scenes, options);
   if (options.profile_points > 0) {
@@ -340,9 +347,9 @@ void add_chains(const std::vector<Scene>& scenes, const MaterialFitOptions& opti
 /// Throws if a force acts on the scenes, E is not identified and solves ended at their evaluation
 /// limit: without the limit it may be identifiable.
 /// @throws ConvergenceError
-void refuse_limited(MaterialProfiles& material, const MaterialFit& fit) {
+void require_unlimited_solves(MaterialProfiles& material, const MaterialFit& fit) {
   const long limited = material.measured().limited_solves();
-  if (limited == 0 || fit.youngs_modulus.value || !material.is_forced()) return;
+  if (limited == 0 || fit.youngs_modulus.value || !material.has_external_force()) return;
   const Scene& scene = material.scenes().front();
   throw ConvergenceError(fmt::format(
       "{}: {} of {} equilibria ended at the evaluation limit and {} is not identified from the "
@@ -352,7 +359,7 @@ void refuse_limited(MaterialProfiles& material, const MaterialFit& fit) {
 }
 
 /// Fits all numbers of a wire. @param least  sum of squares at the start [m^2]
-MaterialFit whole_wire(MaterialProfiles& material, const MaterialPoint& start, double least) {
+MaterialFit fit_whole_wire(MaterialProfiles& material, const MaterialPoint& start, double least) {
   MaterialFit fit = fit_wire(material.scenes(), material.shapes(), material.measured(),
                              material.options(), start, material.has_density());
   fit.assumed = unfitted_assumptions(material.scenes(), material.options());
@@ -368,14 +375,15 @@ MaterialFit whole_wire(MaterialProfiles& material, const MaterialPoint& start, d
 /// @throws in the cases of fit_material()
 Prediction predict_each(const std::vector<Scene>& scenes, const std::vector<MeasuredShape>& shapes,
                         const MaterialFitOptions& options, const MaterialFit& fit) {
-  MaterialFitOptions same = options;
-  same.alternatives = same.predict = false;
-  same.chain_segments = same.profile_points = 0;
-  same.chain_segment_lengths.clear();
-  return leave_one_out(scenes, shapes, options, fit, [&](std::size_t left) -> PredictedScene {
-    const std::vector<Scene> other_scenes = all_but(scenes, left);
-    const MaterialFit others = fit_from(other_scenes, all_but(shapes, left), same, std::nullopt);
-    return {fitted_scene(scenes[left], others, other_scenes.front()), std::nullopt};
+  MaterialFitOptions reduced_options = options;
+  reduced_options.alternatives = reduced_options.predict = false;
+  reduced_options.chain_segments = reduced_options.profile_points = 0;
+  reduced_options.chain_segment_lengths.clear();
+  return leave_one_out(scenes, shapes, options, fit, [&](std::size_t excluded) -> PredictedScene {
+    const std::vector<Scene> other_scenes = without_one(scenes, excluded);
+    const MaterialFit others = fit_material_from(other_scenes, without_one(shapes, excluded),
+                                                 reduced_options, std::nullopt);
+    return {fitted_scene(scenes[excluded], others, other_scenes.front()), std::nullopt};
   });
 }
 
@@ -391,36 +399,39 @@ Scene fitted_scene(Scene scene, const MaterialFit& fit, const Scene& first) {
         scene.stiffness().value * *fit.youngs_modulus.estimate / first.stiffness().value;
   }
   if (fit.density && fit.density->estimate) {
-    rod.heaviness = scene.heaviness().value * *fit.density->estimate / first.heaviness().value;
+    rod.mass_parameter =
+        scene.mass_parameter().value * *fit.density->estimate / first.mass_parameter().value;
   }
   if (fit.torsional_stiffness) rod.torsional_stiffness = fit.torsional_stiffness->estimate;
   return calibrated_scene(std::move(scene), rod);
 }
 
-MaterialPoint material_of(const MaterialFit& fit, const Scene& first) {
+MaterialPoint material_point_of(const MaterialFit& fit, const Scene& first) {
   MaterialPoint result;
   if (fit.youngs_modulus.estimate) {
     result.log_modulus = std::log(*fit.youngs_modulus.estimate / first.stiffness().value);
   }
   if (fit.density && fit.density->estimate) {
-    result.log_density = std::log(*fit.density->estimate / first.heaviness().value);
+    result.log_density = std::log(*fit.density->estimate / first.mass_parameter().value);
   }
   return result;
 }
 
-MaterialFit fit_from(const std::vector<Scene>& scenes, const std::vector<MeasuredShape>& shapes,
-                     const MaterialFitOptions& options, const std::optional<MaterialPoint>& start) {
+MaterialFit fit_material_from(const std::vector<Scene>& scenes,
+                              const std::vector<MeasuredShape>& shapes,
+                              const MaterialFitOptions& options,
+                              const std::optional<MaterialPoint>& start) {
   MaterialProfiles material(scenes, shapes, options);
   MaterialFit fit;
   if (start) {
-    fit = whole_wire(material, *start, material.squares(*start));
+    fit = fit_whole_wire(material, *start, material.squares(*start));
   } else {
     const MaterialProfiles::Search found = material.search();
     fit = fits_a_wire(options)
-              ? whole_wire(material, found.best, found.over_modulus.minimum().value)
+              ? fit_whole_wire(material, found.best, found.over_modulus.minimum().value)
               : fit_material_alone(material, found);
   }
-  refuse_limited(material, fit);
+  require_unlimited_solves(material, fit);
   fit.equilibria = material.measured().solves();
   fit.evaluations = material.measured().evaluations();
   if (options.predict && !fit.prediction) {

@@ -16,14 +16,14 @@ namespace dlo::compare {
 [[nodiscard]] Scene fitted_scene(Scene scene, const MaterialFit& fit, const Scene& first);
 
 /// Returns the material of a fit, whether identified or not, as factors on that of the first scene.
-[[nodiscard]] MaterialPoint material_of(const MaterialFit& fit, const Scene& first);
+[[nodiscard]] MaterialPoint material_point_of(const MaterialFit& fit, const Scene& first);
 
 /// Fits the material with the given options, which fit_material() has checked.
 /// @param start  material from which the fit of all numbers starts, also for each prediction;
 /// empty: all E are searched
-[[nodiscard]] MaterialFit fit_from(const std::vector<Scene>& scenes,
-                                   const std::vector<MeasuredShape>& shapes,
-                                   const MaterialFitOptions& options,
-                                   const std::optional<MaterialPoint>& start);
+[[nodiscard]] MaterialFit fit_material_from(const std::vector<Scene>& scenes,
+                                            const std::vector<MeasuredShape>& shapes,
+                                            const MaterialFitOptions& options,
+                                            const std::optional<MaterialPoint>& start);
 
 }  // namespace dlo::compare

@@ -45,14 +45,14 @@ struct FittedCase {
   [[nodiscard]] Shape chain(ForceModelSettings settings, const SolveOptions& options) const {
     settings.c_c = scene.axial_stiffness();
     if (scene.stretch != Stretch::counted) {
-      settings.c_c = std::max(*settings.c_c, pull() / rigid_strain);
+      settings.c_c = std::max(*settings.c_c, tension_bound() / rigid_strain);
     }
     return solve_chain(scene, settings, options).shape;
   }
   /// Returns the RMS deviation of a chain with the given c_b, divided by the length; infinite if
   /// the chain does not converge.
-  [[nodiscard]] double chain_with(ForceModelSettings settings, double c_b,
-                                  const SolveOptions& options) const {
+  [[nodiscard]] double chain_deviation(ForceModelSettings settings, double c_b,
+                                       const SolveOptions& options) const {
     settings.c_b = c_b;
     try {
       return rms_over_length(chain(settings, options));
@@ -62,8 +62,8 @@ struct FittedCase {
   }
   /// Returns an upper bound of the tension [N]: all weight and loads of the rod, or the largest
   /// force of a gripper.
-  [[nodiscard]] double pull() const {
-    double sum = scene.weight_per_length().norm() * scene.length + scene.total_of_loads();
+  [[nodiscard]] double tension_bound() const {
+    double sum = scene.weight_per_length().norm() * scene.length + scene.total_load_magnitude();
     for (const energy_model::Reaction& grip : reference.grips)
       sum = std::max(sum, grip.force.norm());
     return sum;
@@ -192,7 +192,7 @@ class ForceModelFitter {
         try {
           deviations.c_b.push_back(discretise(entry.scene, settings).parameters.c_b);
           deviations.rms_over_length.push_back(
-              entry.chain_with(settings, deviations.c_b.back(), options_.solve));
+              entry.chain_deviation(settings, deviations.c_b.back(), options_.solve));
         } catch (const InputError&) {
           // The design curvature rotates a joint by half a turn or more, so this rule gives no c_b.
           deviations.c_b.resize(deviations.rms_over_length.size() + 1, NAN);
@@ -206,13 +206,14 @@ class ForceModelFitter {
     result_.c_b_was_given = settings_.c_b.has_value();
     const double together = settings_.c_b ? *settings_.c_b : fitted_c_b(centre, 0, fitted_);
     RuleDeviations fitted{.rule = StiffnessRule::fitted};
-    RuleDeviations alone{.rule = StiffnessRule::fitted_alone};
+    RuleDeviations alone{.rule = StiffnessRule::fitted_per_scene};
     for (std::size_t i = 0; i < cases_.size(); ++i) {
       fitted.c_b.push_back(together);
-      fitted.rms_over_length.push_back(cases_[i].chain_with(settings_, together, options_.solve));
+      fitted.rms_over_length.push_back(
+          cases_[i].chain_deviation(settings_, together, options_.solve));
       alone.c_b.push_back(fitted_c_b(centre, i, i + 1));
       alone.rms_over_length.push_back(
-          cases_[i].chain_with(settings_, alone.c_b.back(), options_.solve));
+          cases_[i].chain_deviation(settings_, alone.c_b.back(), options_.solve));
       counter_.add_one();
     }
     result_.rules.push_back(std::move(fitted));
@@ -241,7 +242,7 @@ class ForceModelFitter {
     const Function misfit = [&](double log_c_b) {
       double sum = 0;
       for (std::size_t i = begin; i < end; ++i) {
-        sum += std::pow(cases_[i].chain_with(settings_, std::exp(log_c_b), options_.solve), 2);
+        sum += std::pow(cases_[i].chain_deviation(settings_, std::exp(log_c_b), options_.solve), 2);
       }
       // Brent's method interpolates, so an undefined value is replaced by a large one.
       return std::min(sum / static_cast<double>(end - begin), no_value);
@@ -263,7 +264,7 @@ class ForceModelFitter {
     double stiffness = 0;
     double axial = std::numeric_limits<double>::infinity();
     for (const FittedCase& entry : cases_) {
-      stiffness = std::max(stiffness, entry.pull() / (stretch_share * options_.target));
+      stiffness = std::max(stiffness, entry.tension_bound() / (stretch_share * options_.target));
       axial = std::min(axial, entry.scene.axial_stiffness());
     }
     settings_.c_c = stiffness > 0 ? std::min(stiffness, axial) : axial;
@@ -278,7 +279,7 @@ class ForceModelFitter {
       std::vector<Eigen::Matrix3Xd> shapes = discretisation.starts;
       shapes.push_back(solve_chain(entry.scene, settings_, options_.solve).shape.points);
       const force_model::Rod rod =
-          takes_twist(entry.scene, settings_)
+          models_twist(entry.scene, settings_)
               ? lowest_polygon(entry.scene, settings_, discretisation, options_.solve).rod
               : discretisation.rod;
       for (const Eigen::Matrix3Xd& points : shapes) {
@@ -375,6 +376,8 @@ double ForceModelFit::worst_holdout() const {
   return largest_of(stepped_rms_over_length, all - holdouts, all);
 }
 
-std::vector<std::string> ForceModelFit::why_missed() const { return shortfall(*this); }
+std::vector<std::string> ForceModelFit::shortfall_reasons() const {
+  return target_shortfall_reasons(*this);
+}
 
 }  // namespace dlo::compare

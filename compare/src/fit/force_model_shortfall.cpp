@@ -22,7 +22,7 @@ double worst_of_segments(const ForceModelFit& fit) {
   return worst;
 }
 
-std::string segments_miss(const ForceModelFit& fit, double segments) {
+std::string discretisation_shortfall(const ForceModelFit& fit, double segments) {
   const int N = fit.settings.points;
   if (fit.settings.law == BendingLaw::paper) {
     return fmt::format(
@@ -41,7 +41,7 @@ std::string segments_miss(const ForceModelFit& fit, double segments) {
                      segments * 100);
 }
 
-std::string stretch_miss(const ForceModelFit& fit, double stretch) {
+std::string stretch_shortfall(const ForceModelFit& fit, double stretch) {
   if (fit.c_c_is_physical) {
     return fmt::format(
         "c_c is A E: the rod stretches as its material does, which the energy model neglects. The "
@@ -57,14 +57,14 @@ std::string stretch_miss(const ForceModelFit& fit, double stretch) {
 
 }  // namespace
 
-std::vector<std::string> shortfall(const ForceModelFit& fit) {
+std::vector<std::string> target_shortfall_reasons(const ForceModelFit& fit) {
   std::vector<std::string> reasons;
   if (fit.reached()) return reasons;
   const double segments = worst_of_segments(fit);
   const double stretch =
       *std::max_element(fit.stretch_rms_over_length.begin(), fit.stretch_rms_over_length.end());
-  if (segments > fit.target) reasons.push_back(segments_miss(fit, segments));
-  if (stretch > fit.target) reasons.push_back(stretch_miss(fit, stretch));
+  if (segments > fit.target) reasons.push_back(discretisation_shortfall(fit, segments));
+  if (stretch > fit.target) reasons.push_back(stretch_shortfall(fit, stretch));
   if (reasons.empty()) {
     reasons.push_back(fmt::format(
         "rigid segments ({:.3g} %) and stretch ({:.3g} %) together are too much: more --points",

@@ -7,7 +7,7 @@
 
 namespace dlo::compare {
 
-/// Returns the reasons in ForceModelFit::why_missed.
-[[nodiscard]] std::vector<std::string> shortfall(const ForceModelFit& fit);
+/// Returns the reasons in ForceModelFit::shortfall_reasons.
+[[nodiscard]] std::vector<std::string> target_shortfall_reasons(const ForceModelFit& fit);
 
 }  // namespace dlo::compare

@@ -41,10 +41,10 @@ void require_pairs(const std::vector<Scene>& scenes, const std::vector<MeasuredS
         "shared (allowed: with the same clamps in all shapes, --same-clamps)");
   }
   if ((options.predict || options.choose_options.value_or(false)) &&
-      shapes.size() < fewest_predicted) {
+      shapes.size() < least_shapes_for_prediction) {
     throw InputError(fmt::format(
         "calibrate: {} shapes are too few to predict each by the others (allowed: {} or more)",
-        shapes.size(), fewest_predicted));
+        shapes.size(), least_shapes_for_prediction));
   }
   if (options.noise && !(*options.noise > 0)) {
     throw InputError(fmt::format("calibrate: noise = {:g} m (allowed: > 0)", *options.noise));
@@ -67,15 +67,16 @@ std::string remove_repeats(std::vector<Scene>& scenes, std::vector<MeasuredShape
       continue;
     }
     removed += (removed.empty() ? "" : ", ") + end->file;
-    shapes = all_but(std::move(shapes), i);
-    scenes = all_but(std::move(scenes), i);
+    shapes = without_one(std::move(shapes), i);
+    scenes = without_one(std::move(scenes), i);
   }
   if (removed.empty()) return "";
   return fmt::format("shapes with the same points are fitted once: {} omitted", removed);
 }
 
 /// Returns MaterialFit::assumed.
-std::vector<std::string> assumed_by(const Calibration& found, const MaterialFitOptions& options) {
+std::vector<std::string> assumptions_of(const Calibration& found,
+                                        const MaterialFitOptions& options) {
   const MaterialFit& fit = found.fit;
   if (!fit.youngs_modulus.low && !fit.youngs_modulus.high) return {};
   const auto any = [&](auto is) { return std::ranges::any_of(found.scenes, is); };
@@ -100,7 +101,7 @@ MaterialFit fit_material(const std::vector<Scene>& scenes, const std::vector<Mea
   require_pairs(scenes, shapes, options);
   if (options.choose_options.value_or(false))
     return fit_with_chosen_options(scenes, shapes, options);
-  return fit_from(scenes, shapes, options, std::nullopt);
+  return fit_material_from(scenes, shapes, options, std::nullopt);
 }
 
 Calibration calibrate(std::vector<Scene> scenes, std::vector<MeasuredShape> shapes,
@@ -118,17 +119,17 @@ Calibration calibrate(std::vector<Scene> scenes, std::vector<MeasuredShape> shap
   const std::string repeats =
       scenes.size() == shapes.size() ? remove_repeats(scenes, shapes) : std::string();
   Calibration result{.scenes = std::move(scenes),
-                     .frame_was_found = options.pose != PoseFreedom::known};
+                     .frame_was_fitted = options.pose != PoseFreedom::known};
   for (const MeasuredShape& shape : shapes) result.files.push_back(shape.file);
   options.alternatives = true;
   if (!options.choose_options) {
     const bool nothing_given =
         options.natural_curvature_terms == 0 && options.direction_tolerance == 0 &&
         options.position_tolerance == 0 && options.roll_tolerance == 0 && !options.shared_clamps;
-    options.choose_options = nothing_given && shapes.size() >= fewest_predicted;
+    options.choose_options = nothing_given && shapes.size() >= least_shapes_for_prediction;
   }
   result.fit = fit_material(result.scenes, shapes, options);
-  result.fit.assumed = assumed_by(result, options);
+  result.fit.assumed = assumptions_of(result, options);
   if (!repeats.empty()) {
     result.fit.warning += (result.fit.warning.empty() ? "" : "; ") + repeats;
   }

@@ -37,7 +37,7 @@ double depth_in_obstacles(const Scene& scene, const energy_model::Equilibrium& e
 }
 
 /// Returns a scene without names, positions in files, and force model, for comparison.
-Scene only_the_rod(Scene scene) {
+Scene comparable_scene(Scene scene) {
   scene.name.clear();
   scene.file.clear();
   scene.material.name.clear();
@@ -73,7 +73,7 @@ MaterialErrors::MaterialErrors(MaterialProfiles& material, const MaterialPoint& 
   tested_ = estimate.tested;
   const Eigen::Index frames = material.measured().frame_columns();
   const ErrorCovariance covariance = estimate.significant ? estimate.covariance : ErrorCovariance();
-  if (estimate.significant) allow_for(covariance, series, frames);
+  if (estimate.significant) set_correlation_effects(covariance, series, frames);
   std::vector<Nuisance> nuisances = frame_nuisances(frames);
   if (material.has_density()) nuisances.push_back({frames + 1, 0, INFINITY});
   scatter_ = scatter_between(estimates_of_shapes(series, covariance, std::pow(noise_m_, 2), frames,
@@ -82,8 +82,9 @@ MaterialErrors::MaterialErrors(MaterialProfiles& material, const MaterialPoint& 
 }
 
 /// Sets the effects of correlated errors.
-void MaterialErrors::allow_for(const ErrorCovariance& covariance,
-                               const std::vector<ResidualSeries>& series, Eigen::Index frames) {
+void MaterialErrors::set_correlation_effects(const ErrorCovariance& covariance,
+                                             const std::vector<ResidualSeries>& series,
+                                             Eigen::Index frames) {
   for (std::size_t k = 0; k < effects_.size(); ++k) {
     effects_[k] = correlation_effect(series, frames + static_cast<Eigen::Index>(k), covariance);
   }
@@ -122,7 +123,7 @@ double MaterialErrors::level(std::size_t number) const {
   return least_ + std::pow(quantile(number), 2) * excess(number) * variance_;
 }
 
-double MaterialErrors::rival_level(std::size_t number) const {
+double MaterialErrors::rival_minimum_level(std::size_t number) const {
   const double nu = std::max(1.0, effects_[number].degrees_of_freedom);
   const double excess_of_all =
       options_.noise ? gsl_distribution(gsl_cdf_chisq_Qinv, 1e-3, fitted_)
@@ -133,12 +134,12 @@ double MaterialErrors::rival_level(std::size_t number) const {
 ShapeMisfit::ShapeMisfit(const std::vector<Scene>& scenes, MeasuredShapes& measured)
     : scenes_(scenes), measured_(measured), searches_(scenes.size(), 0) {
   for (const Scene& scene : scenes) {
-    const auto like_this = [rod = only_the_rod(scene)](const Scene& other) {
-      return only_the_rod(other) == rod;
+    const auto has_same_rod = [rod = comparable_scene(scene)](const Scene& other) {
+      return comparable_scene(other) == rod;
     };
-    const auto first = std::find_if(scenes.begin(), scenes.end(), like_this);
-    first_like_.push_back(static_cast<std::size_t>(first - scenes.begin()));
-    follows_.push_back(scene.grippers.size() > 1);
+    const auto first = std::find_if(scenes.begin(), scenes.end(), has_same_rod);
+    first_equal_scene_.push_back(static_cast<std::size_t>(first - scenes.begin()));
+    is_followed_.push_back(scene.grippers.size() > 1);
   }
 }
 
@@ -172,13 +173,14 @@ const ShapeMisfit::Solved* ShapeMisfit::nearest(std::size_t i,
 
 std::shared_ptr<const ShapeMisfit::Solved> ShapeMisfit::solved(std::size_t i,
                                                                const MaterialPoint& material) {
-  const bool follows = follows_[i];
+  const bool follows = is_followed_[i];
   if (!follows) {
     // Another shape of the same scene needs the same equilibria.
-    const auto shared = std::find_if(shared_.begin(), shared_.end(), [&](const auto& entry) {
-      return entry->scene == first_like_[i] && entry->material == material;
-    });
-    if (shared != shared_.end()) return *shared;
+    const auto shared =
+        std::find_if(shared_solutions_.begin(), shared_solutions_.end(), [&](const auto& entry) {
+          return entry->scene == first_equal_scene_[i] && entry->material == material;
+        });
+    if (shared != shared_solutions_.end()) return *shared;
   }
   const Solved* start = follows ? nearest(i, material) : nullptr;
   if (start != nullptr && start->material == material) {
@@ -202,9 +204,9 @@ std::shared_ptr<const ShapeMisfit::Solved> ShapeMisfit::solved(std::size_t i,
     kept_.push_back(result);
     if (kept_.size() > most_kept * scenes_.size()) kept_.pop_front();
   } else {
-    result->scene = first_like_[i];
-    shared_.push_back(result);
-    if (shared_.size() > most_kept * scenes_.size()) shared_.pop_front();
+    result->scene = first_equal_scene_[i];
+    shared_solutions_.push_back(result);
+    if (shared_solutions_.size() > most_kept * scenes_.size()) shared_solutions_.pop_front();
   }
   return result;
 }
@@ -230,7 +232,7 @@ double ShapeMisfit::operator()(const MaterialPoint& material) {
   return sum;
 }
 
-std::shared_ptr<const ShapeMisfit::Solved> ShapeMisfit::nearer(
+std::shared_ptr<const ShapeMisfit::Solved> ShapeMisfit::nearer_equilibrium(
     std::size_t i, const MaterialPoint& material, const std::shared_ptr<const Solved>& now) {
   std::vector<std::shared_ptr<Solved>> others;
   if (scenes_[i].grippers.size() > 1 && searches_[i]++ < most_searches) {
@@ -256,16 +258,16 @@ std::shared_ptr<const ShapeMisfit::Solved> ShapeMisfit::nearer(
   return result;
 }
 
-bool ShapeMisfit::find_nearer(const MaterialPoint& material) {
+bool ShapeMisfit::find_nearer_equilibria(const MaterialPoint& material) {
   bool better = false;
   std::vector<std::shared_ptr<const Solved>> next;
   for (std::size_t i = 0; i < scenes_.size(); ++i) {
     const std::shared_ptr<const Solved> now = solved(i, material);
-    const std::shared_ptr<const Solved> other = nearer(i, material, now);
+    const std::shared_ptr<const Solved> other = nearer_equilibrium(i, material, now);
     if (other) {
-      better = follows_[i] = true;
+      better = is_followed_[i] = true;
       next.push_back(other);
-    } else if (now && follows_[i]) {
+    } else if (now && is_followed_[i]) {
       next.push_back(now);
     }
   }
@@ -289,8 +291,9 @@ const ShapeMisfit::Unverified* ShapeMisfit::unverified_below(double level) const
   for (const auto& [unverified, sum] : unverified_) {
     // Moving every point of the shape by the depth changes the root of the sum by no more than
     // this.
-    const double off = std::sqrt(static_cast<double>(measured_.points())) * unverified.penetration;
-    if (std::sqrt(sum) - off <= std::sqrt(level)) return &unverified;
+    const double largest_change =
+        std::sqrt(static_cast<double>(measured_.points())) * unverified.penetration;
+    if (std::sqrt(sum) - largest_change <= std::sqrt(level)) return &unverified;
   }
   return nullptr;
 }
@@ -303,23 +306,24 @@ MaterialProfiles::MaterialProfiles(const std::vector<Scene>& scenes,
       options_(options),
       measured_(scenes, shapes, measured_options(options), Timer()),
       misfit_(scenes, measured_),
-      forced_(std::any_of(scenes.begin(), scenes.end(), compare::is_forced)),
-      both_(options.density && std::any_of(scenes.begin(), scenes.end(), has_forces_beside_weight)),
+      has_external_force_(std::any_of(scenes.begin(), scenes.end(), compare::has_external_force)),
+      fits_density_(options.density &&
+                    std::any_of(scenes.begin(), scenes.end(), has_forces_beside_weight)),
       // If every E has the same shapes, differences between them are rounding.
-      low_(forced_ ? std::log(options.smallest_ratio) : 0),
-      high_(forced_ ? std::log(options.largest_ratio) : 0) {
-  const int fewest = options.noise ? 0 : 1;
-  if (freedom() >= fewest) return;
+      low_(has_external_force_ ? std::log(options.smallest_ratio) : 0),
+      high_(has_external_force_ ? std::log(options.largest_ratio) : 0) {
+  const int required_freedom = options.noise ? 0 : 1;
+  if (freedom() >= required_freedom) return;
   throw InputError(
       fmt::format("calibrate: {} measured numbers in addition to the frames for {} unknown "
                   "parameters (allowed: {} or more, so more points{})",
-                  measured_.numbers(), unknowns(), unknowns() + fewest,
+                  measured_.numbers(), unknowns(), unknowns() + required_freedom,
                   options.noise ? "" : ", or a given noise"));
 }
 
 /// Returns the best logarithm of the density at an E, and the sum of squares there.
 Minimum MaterialProfiles::density_at(double log_modulus) {
-  if (!both_) return {0, misfit_({log_modulus, 0})};
+  if (!fits_density_) return {0, misfit_({log_modulus, 0})};
   return LogProfile(
              [&](double y) {
                return misfit_({log_modulus, y});
@@ -331,12 +335,13 @@ Minimum MaterialProfiles::density_at(double log_modulus) {
 MaterialProfiles::Search MaterialProfiles::profile() {
   LogProfile over_modulus([this](double x) { return density_at(x).value; }, low_, high_);
   const double x = over_modulus.minimum().x;
-  return {std::move(over_modulus), {x, both_ ? density_at(x).x : 0}};
+  return {std::move(over_modulus), {x, fits_density_ ? density_at(x).x : 0}};
 }
 
 MaterialProfiles::Search MaterialProfiles::search() {
   Search found = profile();
-  for (int i = 0; i < most_other_states && misfit_.find_nearer(found.best); ++i) found = profile();
+  for (int i = 0; i < most_other_states && misfit_.find_nearer_equilibria(found.best); ++i)
+    found = profile();
   if (!std::isfinite(found.over_modulus.minimum().value)) {
     throw ConvergenceError(
         fmt::format("{}: the energy model found no equilibrium at any of the moduli tried",
@@ -356,11 +361,11 @@ std::vector<ResidualSeries> MaterialProfiles::residuals(const MaterialPoint& mat
   FittedRods rods(
       measured_,
       [this](std::size_t shape, const Eigen::VectorXd& values) {
-        return scene_with_material(scenes_[shape], {values[0], both_ ? values[1] : 0});
+        return scene_with_material(scenes_[shape], {values[0], fits_density_ ? values[1] : 0});
       },
       std::vector<Unknown>(static_cast<std::size_t>(unknowns()),
-                           Unknown{.stride = derivative_step}));
-  rods.go_on_from(misfit_.rods(material));
+                           Unknown{.difference_step = derivative_step}));
+  rods.set_initial_rods(misfit_.rods(material));
   const Eigen::Vector2d values(material.log_modulus, material.log_density);
   return rods.residuals(values.head(unknowns()), FittedRods::Columns::all)
       .value_or(std::vector<ResidualSeries>());

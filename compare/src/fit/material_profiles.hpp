@@ -26,7 +26,7 @@ namespace dlo::compare {
 /// A rod with one gripper is solved anew at each material. With several grippers each equilibrium
 /// is followed from that of the nearest material solved so far (EnergyOptions::start), since a
 /// search costs a hundred times as much. A search is made at the first material, where following
-/// fails, and where find_nearer() requests it, at most `most_searches` times per scene.
+/// fails, and where find_nearer_equilibria() requests it, at most `most_searches` times per scene.
 class ShapeMisfit {
  public:
   ShapeMisfit(const std::vector<Scene>& scenes, MeasuredShapes& measured);
@@ -41,7 +41,7 @@ class ShapeMisfit {
   /// true if an equilibrium differs and is nearer to the shape's points. All results at other
   /// materials are then discarded, and a rod with one gripper is followed from that equilibrium
   /// from then on.
-  bool find_nearer(const MaterialPoint& material);
+  bool find_nearer_equilibria(const MaterialPoint& material);
 
   /// Returns the equilibria at a material; empty where there is none.
   [[nodiscard]] FittedRods::Rods rods(const MaterialPoint& material);
@@ -69,19 +69,20 @@ class ShapeMisfit {
                                               const energy_model::Equilibrium* start);
   /// Returns the equilibrium that is nearer to the points than `now` by more than rounding: the
   /// lowest one or the one near the points; null if neither is.
-  [[nodiscard]] std::shared_ptr<const Solved> nearer(std::size_t i, const MaterialPoint& material,
-                                                     const std::shared_ptr<const Solved>& now);
+  [[nodiscard]] std::shared_ptr<const Solved> nearer_equilibrium(
+      std::size_t i, const MaterialPoint& material, const std::shared_ptr<const Solved>& now);
   [[nodiscard]] const Solved* nearest(std::size_t i, const MaterialPoint& material) const;
 
   const std::vector<Scene>& scenes_;
   MeasuredShapes& measured_;
   std::vector<int> searches_;
-  std::vector<bool> follows_;  // for each scene: whether it is followed from the equilibrium at the
-                               // nearest material
+  std::vector<bool> is_followed_;  // for each scene: whether it is followed from the equilibrium at
+                                   // the nearest material
   std::map<MaterialPoint, double> values_;
   std::deque<std::shared_ptr<const Solved>> kept_;
-  std::vector<std::size_t> first_like_;  // index of the first scene equal to each scene
-  std::deque<std::shared_ptr<const Solved>> shared_;  // solutions of scenes that are not followed
+  std::vector<std::size_t> first_equal_scene_;  // index of the first scene equal to each scene
+  std::deque<std::shared_ptr<const Solved>>
+      shared_solutions_;  // solutions of scenes that are not followed
   // Unverified shapes with their sums of squares [m^2].
   std::vector<std::pair<Unverified, double>> unverified_;
 };
@@ -100,10 +101,10 @@ class MaterialProfiles {
   [[nodiscard]] const MaterialFitOptions& options() const { return options_; }
   [[nodiscard]] MeasuredShapes& measured() { return measured_; }
   /// Whether E has an effect on the shapes.
-  [[nodiscard]] bool is_forced() const { return forced_; }
+  [[nodiscard]] bool has_external_force() const { return has_external_force_; }
   /// Whether the density is fitted besides E.
-  [[nodiscard]] bool has_density() const { return both_; }
-  [[nodiscard]] int unknowns() const { return both_ ? 2 : 1; }
+  [[nodiscard]] bool has_density() const { return fits_density_; }
+  [[nodiscard]] int unknowns() const { return fits_density_ ? 2 : 1; }
   /// Returns the degrees of freedom of the residuals.
   [[nodiscard]] int freedom() const { return measured_.numbers() - unknowns(); }
   [[nodiscard]] double points() const { return static_cast<double>(measured_.points()); }
@@ -148,8 +149,8 @@ class MaterialProfiles {
   const MaterialFitOptions& options_;
   MeasuredShapes measured_;
   ShapeMisfit misfit_;
-  bool forced_;
-  bool both_;
+  bool has_external_force_;
+  bool fits_density_;
   double low_, high_;  // range of log E
 };
 
@@ -170,15 +171,15 @@ class MaterialErrors {
   /// [m^2]. Its frames differ too, so it must be outside the joint region of all fitted numbers:
   /// its sum of squares must be so large that the probability is below 1e-3 (F distribution;
   /// chi-squared distribution for given noise).
-  [[nodiscard]] double rival_level(std::size_t number) const;
+  [[nodiscard]] double rival_minimum_level(std::size_t number) const;
 
   /// Returns the error of the energy model [m]. With it as lower bound of the noise, the interval
   /// of a perfect shape is not rounding.
   [[nodiscard]] static double least_noise(const Scene& scene);
 
  private:
-  void allow_for(const ErrorCovariance& covariance, const std::vector<ResidualSeries>& series,
-                 Eigen::Index frames);
+  void set_correlation_effects(const ErrorCovariance& covariance,
+                               const std::vector<ResidualSeries>& series, Eigen::Index frames);
   [[nodiscard]] double quantile(std::size_t number) const;
   [[nodiscard]] double excess(std::size_t number) const;
 

@@ -91,19 +91,19 @@ std::string last_words(const std::string& file) {
   }
 }
 
-void require_end(const Scene& scene, const Shape& laid, bool told, bool at_start) {
+void require_end(const Scene& scene, const Shape& aligned, bool has_arc_lengths, bool at_start) {
   constexpr double share = 0.01;
   const double end = at_start ? 0 : scene.length;
-  const double outermost = at_start ? laid.arc_length.front() : laid.arc_length.back();
-  const double allowed = share * scene.length + (told ? std::abs(end - outermost) : 0);
-  const Eigen::Vector3d point = laid.points.col(at_start ? 0 : laid.points.cols() - 1);
+  const double outermost = at_start ? aligned.arc_length.front() : aligned.arc_length.back();
+  const double allowed = share * scene.length + (has_arc_lengths ? std::abs(end - outermost) : 0);
+  const Eigen::Vector3d point = aligned.points.col(at_start ? 0 : aligned.points.cols() - 1);
   for (const Gripper& gripper : scene.grippers) {
-    const double apart = (point - gripper.position).norm();
-    if (gripper.at != end || apart <= allowed) continue;
+    const double distance = (point - gripper.position).norm();
+    if (gripper.at != end || distance <= allowed) continue;
     throw InputError(
         fmt::format("wrong end: the shape is {:.3g} m from the gripper at s = {:g} m (allowed: "
                     "{:.3g} m)",
-                    apart, end, allowed));
+                    distance, end, allowed));
   }
 }
 
@@ -120,8 +120,8 @@ ForeignProgram parse_foreign_program(const std::string& text) {
   const std::size_t equals = text.find('=');
   const std::string name = text.substr(0, equals);
   const std::vector<std::string> models = names<Model>();
-  const bool ours = std::find(models.begin(), models.end(), name) != models.end();
-  if (equals == std::string::npos || ours || !is_program_name(name)) {
+  const bool is_dlo_model = std::find(models.begin(), models.end(), name) != models.end();
+  if (equals == std::string::npos || is_dlo_model || !is_program_name(name)) {
     throw InputError(
         fmt::format("--with = {}: {} (allowed: NAME=COMMAND, NAME of letters, digits and _.-+, not "
                     "energy, chain, exact or force)",
@@ -166,9 +166,9 @@ SimulatorRun run_on_document(
   std::vector<std::string> words;
   words.reserve(program.words.size());
   for (const std::string& word : program.words) {
-    words.push_back(with_places(word, {{scene_place, folder.file("scene.json")},
-                                       {points_place, fmt::format("{}", points)},
-                                       {shape_place, folder.file("shape")}}));
+    words.push_back(replace_placeholders(word, {{scene_place, folder.file("scene.json")},
+                                                {points_place, fmt::format("{}", points)},
+                                                {shape_place, folder.file("shape")}}));
   }
   const ChildOutcome outcome = run_child(words, {.error = folder.file("stderr")}, time_limit);
   SimulatorRun result{.points = points, .seconds = outcome.seconds, .too_long = outcome.too_long};
@@ -229,7 +229,7 @@ SimulatorRun run_foreign(const ForeignProgram& program, Scene scene, int points,
   scene.force_model.points = points;
   return run_on_document(program, scene_document_text(scene), points, time_limit,
                          [&scene](const std::string& file, SimulatorRun& result) {
-                           result.shape = whole_of_segment_starts(
+                           result.shape = complete_segment_starts(
                                scene, parse_shape(read_regular_file(file, shape_name), shape_name));
                            result.status = RunStatus::solved;
                          });
@@ -240,29 +240,30 @@ SimulatorRun run_foreign_motion(const ForeignProgram& program, const std::string
   return run_on_document(program, document, points, time_limit, read_motion);
 }
 
-void require_held_ends(const Scene& scene, const Shape& laid, bool told) {
-  for (const bool at_start : {true, false}) require_end(scene, laid, told, at_start);
+void require_held_ends(const Scene& scene, const Shape& aligned, bool has_arc_lengths) {
+  for (const bool at_start : {true, false}) require_end(scene, aligned, has_arc_lengths, at_start);
 }
 
 Deviation foreign_deviation(const Scene& scene, const MeasuredShape& shape,
                             const Reference& reference) {
   const Alignment alignment = align(shape, reference, scene.length);
-  const Shape& laid = alignment.shape;
-  require_held_ends(scene, laid, alignment.arc_lengths == ArcLengths::file);
-  const double seen = (laid.arc_length.back() - laid.arc_length.front()) / scene.length;
-  if (seen < 0.5) {
+  const Shape& aligned = alignment.shape;
+  require_held_ends(scene, aligned, alignment.arc_lengths == ArcLengths::file);
+  const double covered_share =
+      (aligned.arc_length.back() - aligned.arc_length.front()) / scene.length;
+  if (covered_share < 0.5) {
     throw InputError(fmt::format(
         "the shape is {:.3g} % of the rod (allowed: the whole rod, or more than half of it)",
-        seen * 100));
+        covered_share * 100));
   }
   const Measured measured = measure(alignment, reference, scene.length);
-  const WholeRod whole = whole_of(measured, alignment, reference, scene.length);
+  const WholeRod whole = whole_rod_distances(measured, alignment, reference, scene.length);
   Deviation result;
   result.rms_m = whole.rms_m;
   result.max_m = whole.max_m;
   result.rms_over_length = whole.rms_m / scene.length;
   Eigen::Matrix3Xd ends(3, 2);
-  ends << laid.points.leftCols<1>(), laid.points.rightCols<1>();
+  ends << aligned.points.leftCols<1>(), aligned.points.rightCols<1>();
   result.tip_m = shape_deviation(scene, {{0, scene.length}, ends}, reference).tip_m;
   return result;
 }

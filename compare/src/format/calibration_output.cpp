@@ -15,7 +15,7 @@ Key stiffness_key(const compare::Scene& scene) {
                                        : Key{"youngs_modulus", "_Pa"};
 }
 
-Key heaviness_key(const compare::Scene& scene) {
+Key mass_parameter_key(const compare::Scene& scene) {
   return scene.given_mass_per_length ? Key{"mass_per_length", "_kg_per_m"}
                                      : Key{"density", "_kg_per_m3"};
 }
@@ -27,12 +27,12 @@ std::vector<ShownValue> fitted_values(const compare::Calibration& report) {
   const compare::MaterialFit& fit = report.fit;
   std::vector<ShownValue> values = {
       {scene.stiffness(), stiffness_key(scene), "", fit.youngs_modulus}};
-  const auto add = [&](const compare::NamedValue& said, const Key& key,
+  const auto add = [&](const compare::NamedValue& quantity, const Key& key,
                        const std::optional<compare::FittedValue>& value) {
-    if (value) values.push_back({said, key, key.name + "_", *value});
+    if (value) values.push_back({quantity, key, key.name + "_", *value});
   };
   const double GJ = scene.twisting_stiffness();
-  add(scene.heaviness(), heaviness_key(scene), fit.density);
+  add(scene.mass_parameter(), mass_parameter_key(scene), fit.density);
   add({"GJ", "N m^2", GJ}, torsion_key(), fit.torsional_stiffness);
   add({"GJ / EI", "", GJ / scene.mean_bending_stiffness()},
       {"torsional_over_bending_stiffness", ""}, fit.torsion_over_bending);
@@ -80,7 +80,7 @@ Json chains_json(const std::vector<compare::ChainSprings>& chains) {
                       {"segment_length_m", chain.segment_length},
                       {"joint_stiffness_Nm_per_rad", chain.stiffness},
                       {"binormal_stiffness_Nm_per_rad", chain.binormal_stiffness},
-                      {"over_bending_stiffness_per_length", chain.over_rod},
+                      {"over_bending_stiffness_per_length", chain.stiffness_ratio},
                       {"rms_m", chain.rms_m}});
     if (!chain.joints.empty()) {
       result.back()["segment_lengths_m"] = chain.segment_lengths;
@@ -139,7 +139,7 @@ bool is_given_by_stiffness(const compare::Scene& scene) {
       fmt::format("calibrate: {} and {} are of no one table (allowed: a scene with both "
                   "bending_stiffness and "
                   "mass_per_length, or with neither; -o FILE.json)",
-                  scene.stiffness().name, scene.heaviness().name));
+                  scene.stiffness().name, scene.mass_parameter().name));
 }
 
 void add_clamps(std::string& out, const compare::MaterialFit& fit) {
@@ -153,7 +153,7 @@ void add_clamps(std::string& out, const compare::MaterialFit& fit) {
 }  // namespace
 
 void add_rod_lines(std::string& out, const compare::Scene& scene, const WrittenValue& stiffness,
-                   const WrittenValue& heaviness, const std::string& source) {
+                   const WrittenValue& mass_parameter, const std::string& source) {
   const bool given = is_given_by_stiffness(scene);
   if (!given) out += "[[material]]\nname = \"calibrated\"\n";
   std::string value = fmt::format("{:.8e}", stiffness.value);
@@ -164,8 +164,8 @@ void add_rod_lines(std::string& out, const compare::Scene& scene, const WrittenV
   }
   append(out, "{} = {}  # {}, {}\n", stiffness_key(scene).name, value, scene.stiffness().unit,
          stiffness.interval);
-  append(out, "{} = {:.8e}  # {}, {}\n", heaviness_key(scene).name, heaviness.value,
-         scene.heaviness().unit, heaviness.interval);
+  append(out, "{} = {:.8e}  # {}, {}\n", mass_parameter_key(scene).name, mass_parameter.value,
+         scene.mass_parameter().unit, mass_parameter.interval);
   append(out, "{}{}{}\n", given ? "# " : "source = \"", source, given ? "" : "\"");
 }
 
@@ -193,7 +193,7 @@ std::string material_toml(const compare::Calibration& report) {
   add_shape_lines(out, fit);
   add_rod_lines(out, scene, {*E.estimate, interval_text(E)},
                 fit.density ? WrittenValue{*fit.density->estimate, interval_text(*fit.density)}
-                            : WrittenValue{scene.heaviness().value, "of the scene"},
+                            : WrittenValue{scene.mass_parameter().value, "of the scene"},
                 fmt::format("least squares of {} measured shape{}, noise {:.3g} m{}",
                             fit.shapes.size(), fit.shapes.size() == 1 ? "" : "s", fit.noise_m,
                             fit.correlation ? ", correlated along the rod" : ""));

@@ -19,12 +19,12 @@ struct Key {
 
 /// Returns the key of the stiffness: of E, or of EI if the rod is given by EI and its mass.
 [[nodiscard]] Key stiffness_key(const compare::Scene& scene);
-[[nodiscard]] Key heaviness_key(const compare::Scene& scene);
+[[nodiscard]] Key mass_parameter_key(const compare::Scene& scene);
 [[nodiscard]] Key torsion_key();
 
 /// One of the fitted numbers of a material.
 struct ShownValue {
-  compare::NamedValue said;  ///< quantity and value of the scene, for text
+  compare::NamedValue quantity;  ///< quantity and value of the scene, for text
   Key key;
   std::string prefix;  ///< prefix of the keys of the uncertainty and the interval
   compare::FittedValue value;
@@ -57,6 +57,6 @@ struct WrittenValue {
 /// Adds stiffness, mass and their source: lines of [rod], or a [[material]].
 /// @throws compare::InputError if the scene has one of EI and mass per length, and not the other
 void add_rod_lines(std::string& out, const compare::Scene& scene, const WrittenValue& stiffness,
-                   const WrittenValue& heaviness, const std::string& source);
+                   const WrittenValue& mass_parameter, const std::string& source);
 
 }  // namespace dlo::cli

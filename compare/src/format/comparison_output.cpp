@@ -43,7 +43,7 @@ void add_modulus(std::string& out, const compare::EffectiveModulus& modulus, dou
                  const compare::NamedValue& of, double value) {
   const std::string ratio = fmt::format("{0}*/{0}", of.name);
   if (modulus.optimum == compare::Optimum::none) {
-    append(out, "  {:<15} not determined: {}\n", ratio, modulus.why_none);
+    append(out, "  {:<15} not determined: {}\n", ratio, modulus.missing_reason);
     return;
   }
   append(out, "  {:<15} {:.4f}", ratio, modulus.ratio);
@@ -114,7 +114,7 @@ Json comparison_json(const compare::Comparison& comparison) {
                  {"undeformed_rms_over_length", comparison.undeformed_rms_over_length}};
   result.update(modulus_json(comparison.effective_modulus));
   result["parameters"] = parameters_json(comparison.force, comparison.settings);
-  result["residual_over_movement"] = comparison.residual_over_movement;
+  result["residual_over_movement"] = comparison.residual_over_displacement;
   Json& parts = result["budget"] = Json::object();
   Json shares = Json::object();
   for (const compare::NamedPart& part : compare::budget_parts()) {

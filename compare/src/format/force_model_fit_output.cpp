@@ -61,7 +61,7 @@ Json force_model_json(const ForceModelFit& fit) {
           {"order_of_convergence", fit.order > 0 ? Json(fit.order) : Json(nullptr)},
           {"target", fit.target},
           {"reached", fit.reached()},
-          {"why_missed", fit.why_missed()},
+          {"why_missed", fit.shortfall_reasons()},
           {"deviation",
            {{"worst_rms_over_length", fit.worst()},
             {"worst_holdout_rms_over_length",
@@ -93,7 +93,7 @@ compare::Document force_model_document(const ForceModelFit& fit, bool target_was
   if (fit.holdouts > 0) append(out, ", of the hold-out scenes {}", percent(fit.worst_holdout()));
   append(out, " of l (RMS): the {} of {} is {}\n", target_was_given ? "target" : "default target",
          percent(fit.target), fit.reached() ? "reached" : "not reached");
-  for (const std::string& reason : fit.why_missed()) {
+  for (const std::string& reason : fit.shortfall_reasons()) {
     append(out, "  {}\n", compare::wrap(reason, 2, 100));
   }
   append(out, "  c_c: {}\n\n", c_c_origin(fit));

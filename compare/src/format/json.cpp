@@ -26,11 +26,11 @@ Json modulus_json(const compare::EffectiveModulus& modulus) {
           {"effective_modulus_explains_share", modulus.explained_share},
           {"effective_modulus_at_bifurcation", none ? Json() : Json(modulus.at_bifurcation)},
           {"optimum", none ? Json() : Json(compare::to_string(modulus.optimum))},
-          {"why_no_effective_modulus", none ? Json(modulus.why_none) : Json()}};
+          {"why_no_effective_modulus", none ? Json(modulus.missing_reason) : Json()}};
 }
 
-Json to_json(const compare::ComparedState& state) {
-  Json others = json_list(state.others, [&](const compare::OtherState& other) -> Json {
+Json to_json(const compare::ComparedEquilibrium& state) {
+  Json others = json_list(state.others, [&](const compare::UncomparedEquilibrium& other) -> Json {
     return {{"stable", other.stable},
             {"energy_difference_J", other.energy_difference_J},
             {"rms_from_compared_m", other.rms_from_compared_m},

@@ -32,6 +32,6 @@ using compare::to_json;
 [[nodiscard]] Json obstacles_json(const std::vector<Eigen::Vector3d>& forces);
 [[nodiscard]] Json parameters_json(const compare::Solution& force,
                                    const compare::ForceModelSettings& settings);
-[[nodiscard]] Json to_json(const compare::ComparedState& state);
+[[nodiscard]] Json to_json(const compare::ComparedEquilibrium& state);
 
 }  // namespace dlo::cli

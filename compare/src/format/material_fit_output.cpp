@@ -28,8 +28,8 @@ std::string prediction_text(const compare::Prediction& prediction) {
   if (!prediction.repeatability_m) return out;
   append(out, "            {:.4g} mm between each shape and the mean of the others: ",
          *prediction.repeatability_m * 1e3);
-  const double ratio = prediction.over_repeatability().value_or(1);
-  if (ratio > compare::worse_than_repeatability) {
+  const double ratio = prediction.repeatability_ratio().value_or(1);
+  if (ratio > compare::reported_repeatability_ratio) {
     append(out,
            "predictions are {:.3g} times worse\n            than the shapes repeat, so the fit "
            "lacks something that all shapes have in common\n",
@@ -61,8 +61,8 @@ Json numbers_json(const compare::MaterialFit& fit) {
             {"unit", number.unit},
             {"value", number.value},
             {"standard_deviation", number.deviation},
-            {"known_before", number.known_before},
-            {"seen", number.is_seen()},
+            {"known_before", number.prior_deviation},
+            {"seen", number.is_determined_by_shapes()},
             {"shape", json_or_null(number.shape)}};
   });
 }
@@ -123,7 +123,7 @@ Json shapes_json(const compare::Calibration& report) {
 /// Returns the columns of the only row of CSV.
 std::string material_columns(const compare::Scene& scene) {
   const Key stiffness = stiffness_key(scene);
-  const Key heaviness = heaviness_key(scene);
+  const Key mass_parameter = mass_parameter_key(scene);
   return fmt::format(
       "{0},low{1}=interval_95{1}/0,high{1}=interval_95{1}/1,{2},{3}_low={3}_interval_95{4}/0,"
       "{3}_high={3}_interval_95{4}/1,noise_m,degrees_of_freedom,rms_m,not_identified,warning,"
@@ -132,8 +132,8 @@ std::string material_columns(const compare::Scene& scene) {
       "interval_widened_by=correlation/interval_widened_by,"
       "effective_degrees_of_freedom=correlation/effective_degrees_of_freedom,"
       "{5}{6},{5}_low={5}_interval_95{6}/0,{5}_high={5}_interval_95{6}/1",
-      stiffness.text(), stiffness.unit, heaviness.text(), heaviness.name, heaviness.unit,
-      torsion_key().name, torsion_key().unit);
+      stiffness.text(), stiffness.unit, mass_parameter.text(), mass_parameter.name,
+      mass_parameter.unit, torsion_key().name, torsion_key().unit);
 }
 
 Json material_json(const compare::Calibration& report) {
@@ -174,7 +174,7 @@ Json material_json(const compare::Calibration& report) {
   result["prediction"] = json_or_null(fit.prediction, [](const auto& found) -> Json {
     return {{"rms_m", found.rms_m},
             {"repeatability_m", json_or_null(found.repeatability_m)},
-            {"over_repeatability", json_or_null(found.over_repeatability())},
+            {"over_repeatability", json_or_null(found.repeatability_ratio())},
             {"shapes_m", found.shapes_m}};
   });
   result["scatter_between_shapes"] = json_or_null(fit.scatter, scatter_json);
@@ -191,9 +191,10 @@ compare::Document material_document(const compare::Calibration& report) {
   document.shown = document.json;
   std::string& out = document.head;
   for (const ShownValue& one : fitted_values(report)) {
-    const compare::NamedValue& said = one.said;
-    append(out, "{:<11} {}   (scene: {:.5g}{}{})\n", said.name, value_text(one.value, said.unit),
-           said.value, *said.unit == '\0' ? "" : " ", said.unit);
+    const compare::NamedValue& quantity = one.quantity;
+    append(out, "{:<11} {}   (scene: {:.5g}{}{})\n", quantity.name,
+           value_text(one.value, quantity.unit), quantity.value, *quantity.unit == '\0' ? "" : " ",
+           quantity.unit);
     for (const std::string& key : value_keys(one.key, one.prefix)) document.shown.erase(key);
   }
   if (!fit.assumed.empty()) {

@@ -8,8 +8,8 @@ Json plan_json(const compare::Plan& plan) {
   Json spans = json_list(plan.spans, [&](const compare::PlannedSpan& span) -> Json {
     return {{"begin_m", span.begin},
             {"end_m", span.end},
-            {"begin_held", span.begin_held},
-            {"end_held", span.end_held},
+            {"begin_held", span.begin_support},
+            {"end_held", span.end_support},
             {"inner_pins", span.inner_pins}};
   });
   Json obstacles = json_list(plan.obstacles, [&](const compare::PlannedObstacle& obstacle) -> Json {

@@ -69,7 +69,7 @@ Json rod_document(const Scene& scene) {
     }
   }
   Json rod;
-  each_member(scene, [&rod](const char* key, const auto& value) {
+  for_each_member(scene, [&rod](const char* key, const auto& value) {
     rod[document_key(scene_table("rod").key(key))] = known(value);
   });
   rod.update(Json{

@@ -59,20 +59,20 @@ Json shape_check_json(const compare::CheckResult& report) {
   if (report.scene.model) result["model"] = model_json(report.scene);
   if (!report.notes.empty()) result["notes"] = report.notes;
   result.update(to_json(c.alignment));
-  result["direction_is_clear"] = c.direction_is_clear;
-  result["turn_is_clear"] = c.turn_is_clear;
+  result["direction_is_clear"] = c.is_direction_determined;
+  result["turn_is_clear"] = c.is_rotation_determined;
   result["seen"] = {{"from_m", s.front()},
                     {"to_m", s.back()},
-                    {"share", c.seen_share},
+                    {"share", c.observed_share},
                     {"polyline_length_m", c.polyline_length_m},
                     {"largest_gap_m", c.largest_gap_m},
                     {"largest_gap_at_m", c.largest_gap_at_m},
-                    {"excess_m", c.excess_m}};
+                    {"excess_m", c.length_beyond_ends_m}};
   result["hint"] = c.hint.empty() ? Json() : Json(c.hint);
   result["deviation"] =
       compare::json_of(compare::numbers_of(compare::deviation_fields(), c.deviation));
-  result["deviation"]["whole_rms_m"] = c.whole_rms_m;
-  result["deviation"]["whole_max_m"] = c.whole_max_m;
+  result["deviation"]["whole_rms_m"] = c.whole_rod_rms_m;
+  result["deviation"]["whole_max_m"] = c.whole_rod_max_m;
   result["deviation"]["worst_point"] = c.worst_point;
   result["deviation"]["worst_position_m"] = to_json(c.worst_position);
   result["movement_m"] = c.movement_m;
@@ -80,11 +80,11 @@ Json shape_check_json(const compare::CheckResult& report) {
   const bool given_by_EI = report.scene.given_bending_stiffness.has_value();
   result[given_by_EI ? "effective_bending_stiffness_Nm2" : "effective_modulus_Pa"] = c.modulus;
   result["superseded_by"] =
-      report.supersedes_modulus ? Json(report.supersedes_modulus->cause) : Json();
+      report.superseding_cause ? Json(report.superseding_cause->cause) : Json();
   result["tolerance"] = {{"measure", report.tolerance.largest ? "max" : "rms"},
                          {"allowed_m", report.tolerance.allowed_m},
                          {"of_deflection", report.tolerance.deflection_share > 0},
-                         {"least_seen_share", report.tolerance.least_seen_share},
+                         {"least_seen_share", report.tolerance.least_observed_share},
                          {"part", report.tolerance.part},
                          {"default", report.tolerance.by_default}};
   result["judged_m"] = report.judgement.judged_m;
@@ -101,7 +101,7 @@ Json shape_check_json(const compare::CheckResult& report) {
                 {"rms_m", explanation.rms_m}};
       });
   result["state"] = to_json(c.state);
-  if (compare::friction_in_reach(report.scene)) result["neglected"] = {"friction"};
+  if (compare::is_friction_in_reach(report.scene)) result["neglected"] = {"friction"};
   result["arc_length_m"] = s;
   result["points_m"] = points_json(c.alignment.shape.points);
   result["reference_points_m"] = points_json(c.reference.points);
@@ -123,12 +123,12 @@ compare::Document shape_check_document(const CheckPage& page) {
   const Eigen::Vector3d at = shown(c.worst_position, report.scene.length);
   append(out, " (point {} of the file, at [{:.4g}, {:.4g}, {:.4g}] m)\n", c.worst_point, at.x(),
          at.y(), at.z());
-  if (report.supersedes_modulus) {
+  if (report.superseding_cause) {
     append(out,
            "  {:<15} not meaningful: the best stiffness leaves {:.4g} mm (RMS), the best cause "
            "{:.4g} mm\n",
            fmt::format("{0}*/{0}", c.stiffness.name), c.effective_modulus.rms_m * 1e3,
-           report.supersedes_modulus->rms_m * 1e3);
+           report.superseding_cause->rms_m * 1e3);
   } else {
     add_modulus(out, c.effective_modulus, NAN, c.stiffness, c.modulus);
   }

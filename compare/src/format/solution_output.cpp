@@ -103,7 +103,7 @@ void add_equilibria(Json& document, const compare::AllSolutions& all) {
       json_list(all.strategies, [&](const energy_model::SearchStrategy& strategy) -> Json {
         return {{"strategy", strategy.name},
                 {"starts", strategy.tried},
-                {"found_first", strategy.found_first}};
+                {"found_first", strategy.new_equilibria}};
       });
   document["not_looked"] = all.omitted;
 }
@@ -112,7 +112,7 @@ void add_equilibria(Json& document, const compare::AllSolutions& all) {
 
 std::string solution_text(const compare::Solution& solution, const compare::Scene& scene) {
   Json all = solution_json(solution, scene, {});
-  if (solution.passing_starts == 0) all.erase("passing_starts");
+  if (solution.other_side_starts == 0) all.erase("passing_starts");
   if (solution.stretch_decision == compare::StretchDecision::given) all.erase("stretch_decision");
   for (const char* key : {"scene", "model", "converged", "status", "arc_length_m", "points_m",
                           "plan", "error_estimate_m"}) {

@@ -25,16 +25,16 @@ std::size_t state_of(const Scene& scene, const Shape& force,
   ForceModelSettings settings = scene.force_model;
   settings.law = BendingLaw::hooke;
   // The force model without twist is compared with a relaxed shape without twist.
-  const bool twisted = takes_twist(scene, scene.force_model);
+  const bool twisted = models_twist(scene, scene.force_model);
   const Shape downhill =
       chain_from(twisted ? scene : scene.without_twist(), settings, force, options);
   std::size_t nearest = 0;
   double least = std::numeric_limits<double>::infinity();
   for (std::size_t i = 0; i < states.size(); ++i) {
     if (states[i].status == energy_model::SolveStatus::saddle) continue;
-    const double apart = distance(downhill, states[i].sample);
-    if (apart >= least) continue;
-    least = apart;
+    const double separation = distance(downhill, states[i].sample);
+    if (separation >= least) continue;
+    least = separation;
     nearest = i;
   }
   return nearest;
@@ -45,11 +45,12 @@ std::size_t state_of(const Scene& scene, const Shape& force,
 void add_state_of_force_model(const Scene& scene, const Shape& force, const SolveOptions& options,
                               std::vector<energy_model::Equilibrium>& states) {
   const bool is_near = std::any_of(states.begin(), states.end(), [&](const auto& state) {
-    return succeeded(state.status) && distance(force, state.sample) < surely_nearest * scene.length;
+    return succeeded(state.status) &&
+           distance(force, state.sample) < nearest_shape_tolerance * scene.length;
   });
   if (is_near) return;
-  if (std::optional<energy_model::Equilibrium> near = state_near(scene, force, options)) {
-    (void)add_state(scene, *std::move(near), states);
+  if (std::optional<energy_model::Equilibrium> near = equilibrium_near(scene, force, options)) {
+    (void)insert_equilibrium(scene, *std::move(near), states);
   }
 }
 
@@ -71,7 +72,7 @@ Comparison compare(const Scene& scene, const SolveOptions& options,
   const energy_model::Equilibrium lowest = solve_reference(scene, options);
   result.energy_seconds = lowest.seconds;
   result.energy_evaluations = lowest.evaluations;
-  std::vector<energy_model::Equilibrium> states = all_states(scene, lowest, options);
+  std::vector<energy_model::Equilibrium> states = all_equilibria(scene, lowest, options);
   add_state_of_force_model(scene, force, options, states);
   const std::size_t compared = state_of(scene, force, states, options);
   const energy_model::Equilibrium& energy = states[compared];
@@ -86,9 +87,9 @@ Comparison compare(const Scene& scene, const SolveOptions& options,
   result.reference = {s, energy.sample(s).points};
   result.reference_rod = energy.sample;
   result.contacts = contacts_of(scene, energy);
-  if (touches_with_friction(scene,
-                            forces_of_all(scene, obstacles_in_reach(scene), energy.obstacles)) &&
-      !touches_with_friction(scene, result.force.obstacles)) {
+  if (has_friction_contact(
+          scene, expand_obstacle_forces(scene, obstacles_in_reach(scene), energy.obstacles)) &&
+      !has_friction_contact(scene, result.force.obstacles)) {
     result.force.neglected.emplace_back("friction");
   }
   const std::optional<Eigen::Matrix3Xd> straight = straight_rod(scene, s);
@@ -98,11 +99,11 @@ Comparison compare(const Scene& scene, const SolveOptions& options,
   if (modulus == ModulusSearch::yes && result.unverified.empty()) {
     result.effective_modulus = fit_effective_modulus(scene, distance, energy, options);
   }
-  result.residual_over_movement =
+  result.residual_over_displacement =
       result.deviation.rms_over_movement / result.deviation.rms_m * result.effective_modulus.rms_m;
   // The deflection is the one reported, at the force model's points.
-  result.effective_modulus.optimum = without_small_movement(
-      result.effective_modulus, result.effective_modulus.rms_m / result.residual_over_movement);
+  result.effective_modulus.optimum = optimum_given_displacement(
+      result.effective_modulus, result.effective_modulus.rms_m / result.residual_over_displacement);
   result.budget = error_budget(scene, result.force, energy.sample, options);
   return result;
 }

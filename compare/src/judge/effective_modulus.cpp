@@ -24,7 +24,7 @@ constexpr int steps_per_decade = 4;
 constexpr int most_worse_steps = 2;
 /// RMS distance between the shapes at two moduli, divided by the length, up to which they belong to
 /// the same equilibrium.
-constexpr double largest_way = 0.1;
+constexpr double largest_deviation = 0.1;
 /// Shortest step along ln(E*/E). An equilibrium that is lost with it is considered to end.
 constexpr double least_step = 0.02;
 /// Accuracy of ln(E*/E).
@@ -115,8 +115,8 @@ class FollowedState {
     ++solves_;
     try {
       energy_model::Equilibrium state = solve_reference(scene, options);
-      const double way = rms(s_, state.sample(s_).points - start.points);
-      if (!(way <= largest_way * scene_.length)) return nullptr;
+      const double deviation = rms(s_, state.sample(s_).points - start.points);
+      if (!(deviation <= largest_deviation * scene_.length)) return nullptr;
       return &remember(log_ratio, std::move(state));
     } catch (const ConvergenceError&) {
       return nullptr;
@@ -141,10 +141,10 @@ Scan scan_both_ways(FollowedState& mean_square, double resolution) {
   const int lowest = static_cast<int>(std::round(std::log(smallest_modulus_ratio) / step));
   const int highest = static_cast<int>(std::round(std::log(largest_modulus_ratio) / step));
   std::map<double, double> values;
-  for (const int way : {-1, 1}) {
+  for (const int direction : {-1, 1}) {
     double least = std::numeric_limits<double>::infinity();
     int worse = 0;
-    for (int i = 0; i >= lowest && i <= highest && worse < most_worse_steps; i += way) {
+    for (int i = 0; i >= lowest && i <= highest && worse < most_worse_steps; i += direction) {
       const double value = mean_square(step * i);
       values[step * i] = value;
       const bool less = std::sqrt(value) < std::sqrt(least) - resolution;
@@ -163,7 +163,7 @@ Scan scan_both_ways(FollowedState& mean_square, double resolution) {
 
 EffectiveModulus no_modulus(std::string why) {
   EffectiveModulus result;
-  result.why_none = std::move(why);
+  result.missing_reason = std::move(why);
   return result;
 }
 
@@ -181,10 +181,10 @@ double rms_distance_from_straight(const Scene& scene, const energy_model::Equili
 /// branch.
 bool is_at_bifurcation(FollowedState& state, double log_ratio) {
   // The distance from its end to which an equilibrium is followed.
-  constexpr double beside = 2 * least_step;
+  constexpr double offset = 2 * least_step;
   constexpr double vanishing = 0.25;
-  const double low = log_ratio - beside;
-  const double high = log_ratio + beside;
+  const double low = log_ratio - offset;
+  const double high = log_ratio + offset;
   // Beyond the range of moduli nothing is known.
   const bool in_range =
       low >= std::log(smallest_modulus_ratio) && high <= std::log(largest_modulus_ratio);
@@ -215,12 +215,12 @@ EffectiveModulus search(FollowedState& mean_square, double resolution) {
   const Minimum minimum = bracketed ? minimum_near(function, values, log_tolerance)
                                     : Minimum{values.x[best], values.value[best]};
   EffectiveModulus result;
-  result.why_none.clear();
+  result.missing_reason.clear();
   result.ratio = std::exp(minimum.x);
   result.rms_m = std::sqrt(minimum.value);
-  const double at_own = mean_square(0);
-  if (std::sqrt(at_own) > resolution) {
-    result.explained_share = std::max(0.0, 1 - minimum.value / at_own);
+  const double at_nominal = mean_square(0);
+  if (std::sqrt(at_nominal) > resolution) {
+    result.explained_share = std::max(0.0, 1 - minimum.value / at_nominal);
   }
   result.at_bifurcation = is_at_bifurcation(mean_square, minimum.x);
   if (!bracketed || result.at_bifurcation) {
@@ -233,16 +233,17 @@ EffectiveModulus search(FollowedState& mean_square, double resolution) {
   if (around < 1.1 * result.rms_m || !(around - result.rms_m > resolution)) {
     result.optimum = Optimum::flat;
   } else {
-    result.optimum = result.explained_share < clear_share ? Optimum::partial : Optimum::clear;
+    result.optimum =
+        result.explained_share < clear_optimum_share ? Optimum::partial : Optimum::clear;
   }
   return result;
 }
 
 }  // namespace
 
-Optimum without_small_movement(const EffectiveModulus& modulus, double movement_m) {
-  const bool leaves_more = modulus.rms_m > movement_m;
-  return modulus.optimum == Optimum::clear && leaves_more ? Optimum::partial : modulus.optimum;
+Optimum optimum_given_displacement(const EffectiveModulus& modulus, double movement_m) {
+  const bool exceeds_movement = modulus.rms_m > movement_m;
+  return modulus.optimum == Optimum::clear && exceeds_movement ? Optimum::partial : modulus.optimum;
 }
 
 ShapeDistance distance_from(const Shape& shape) {
@@ -270,7 +271,7 @@ EffectiveModulus fit_effective_modulus(const Scene& scene, const ShapeDistance& 
                             : fmt::format("time limit of {:g} s reached", options.time_limit));
   }
   result.solves = mean_square.solves();
-  result.optimum = without_small_movement(result, rms_distance_from_straight(scene, state));
+  result.optimum = optimum_given_displacement(result, rms_distance_from_straight(scene, state));
   return result;
 }
 

@@ -77,7 +77,7 @@ RodsWithout rods_without(const Scene& scene, const Scene& taken, const std::vect
     return fields.of({s, lowest.sample(s).points});
   };
   RodsWithout result;
-  result.twist = scene.holds_twist() && !takes_twist(scene, scene.force_model)
+  result.twist = scene.prescribes_twist() && !models_twist(scene, scene.force_model)
                      ? rod(scene.without_twist())
                      : fields.zero();
   const bool leaves_curvature_out =
@@ -96,7 +96,7 @@ Budget error_budget(const Scene& scene, const Solution& force, const Reference& 
   const double stiffer = reference_model(scene) == Model::exact ? 1 : 100;
   const double rigid = stiffer * scene.axial_stiffness();
   // The chains model the scene as the force model does.
-  const Scene taken = as_polygons_take_it(scene, own);
+  const Scene taken = without_neglected_properties(scene, own);
   const auto chain_in = [&](const Scene& other, BendingLaw law, Bookkeeping bookkeeping,
                             double c_c) {
     ForceModelSettings settings = own;

@@ -32,11 +32,11 @@ MeasuredShape thinned(const MeasuredShape& shape) {
   if (every == 1) return shape;
   MeasuredShape result;
   result.file = shape.file;
-  const Eigen::Index kept = (count - 1) / every + 1;
-  result.points.resize(3, kept);
-  for (Eigen::Index i = 0; i < kept; ++i) {
+  const Eigen::Index kept_count = (count - 1) / every + 1;
+  result.points.resize(3, kept_count);
+  for (Eigen::Index i = 0; i < kept_count; ++i) {
     // The last point is kept, so that the polyline keeps its length.
-    const Eigen::Index from = i + 1 == kept ? count - 1 : i * every;
+    const Eigen::Index from = i + 1 == kept_count ? count - 1 : i * every;
     result.points.col(i) = shape.points.col(from);
     if (!shape.arc_length.empty()) {
       result.arc_length.push_back(shape.arc_length[static_cast<std::size_t>(from)]);
@@ -56,11 +56,11 @@ double distance_from_line(const Eigen::Matrix3Xd& points) {
 
 /// Returns the number of points that do not coincide with the position of a gripper.
 long measured_points(const Scene& scene, const Eigen::Matrix3Xd& points) {
-  constexpr double same = 1e-3;  // divided by the length
+  constexpr double tolerance = 1e-3;  // divided by the length
   long count = 0;
   for (const auto& point : points.colwise()) {
     const bool is_held = std::ranges::any_of(scene.grippers, [&](const Gripper& gripper) {
-      return (gripper.position - point).norm() <= same * scene.length;
+      return (gripper.position - point).norm() <= tolerance * scene.length;
     });
     count += is_held ? 0 : 1;
   }
@@ -104,7 +104,7 @@ std::string hint_of(const ShapeCheck& check, const Measured& measured) {
     return fmt::format("the polyline is {:.4g} % longer than its arc lengths: stretched, or noise",
                        stretch * 100);
   }
-  if (check.excess_m > least * check.length_m) {
+  if (check.length_beyond_ends_m > least * check.length_m) {
     const bool at_end = measured.excess_at_end_m >= measured.excess_at_start_m;
     const Eigen::Index outermost = at_end ? points.cols() - 1 : 0;
     const Eigen::Vector3d end = measured.reference.col(outermost);
@@ -114,10 +114,10 @@ std::string hint_of(const ShapeCheck& check, const Measured& measured) {
     const double share = past.dot(along) / past.norm();
     // Points within 30 degrees of the rod's direction continue the rod.
     const bool straight_on = share > 0.866;
-    return fmt::format("longer than the rod by {:.4g} mm past {}: {}", check.excess_m * 1e3,
-                       at_end ? "arc length l" : "arc length 0",
+    return fmt::format("longer than the rod by {:.4g} mm past {}: {}",
+                       check.length_beyond_ends_m * 1e3, at_end ? "arc length l" : "arc length 0",
                        straight_on ? fmt::format("stretched by {:.2g} %, or another rod",
-                                                 check.excess_m / check.length_m * 100)
+                                                 check.length_beyond_ends_m / check.length_m * 100)
                                    : "the points there do not continue in the rod's direction");
   }
   const double missing = check.length_m - (s.back() - s.front());
@@ -164,17 +164,18 @@ void add_seen_part(const MeasuredShape& shape, const std::vector<double>& s, dou
     check.largest_gap_at_m = s[i];
   }
   check.polyline_length_m = polyline_length(shape.points);
-  check.seen_share = (s.back() - s.front()) / length;
+  check.observed_share = (s.back() - s.front()) / length;
 }
 
 AlignOptions align_options(const Scene& scene, const ShapeCheckOptions& options) {
-  return {
-      .pose = options.pose, .arc_lengths = options.arc_lengths, .up = up_of(scene, options.pose)};
+  return {.pose = options.pose,
+          .arc_lengths = options.arc_lengths,
+          .up = upward_direction(scene, options.pose)};
 }
 
 /// Compares an aligned shape with an equilibrium: sets all of ShapeCheck except the state, other
-/// equilibria, unverified, stretched_length_m, turn_is_clear, E*/E and E*.
-ShapeCheck compared(const Scene& scene, const MeasuredShape& shape, Alignment laid,
+/// equilibria, unverified, stretched_length_m, is_rotation_determined, E*/E and E*.
+ShapeCheck compared(const Scene& scene, const MeasuredShape& shape, Alignment aligned,
                     const energy_model::Equilibrium& rod) {
   ShapeCheck result;
   result.scene = scene.name;
@@ -182,7 +183,7 @@ ShapeCheck compared(const Scene& scene, const MeasuredShape& shape, Alignment la
   result.gamma = scene.gamma();
   result.length_m = scene.length;
   result.stiffness = scene.stiffness();
-  result.alignment = std::move(laid);
+  result.alignment = std::move(aligned);
   const Alignment& alignment = result.alignment;
   const Measured measured = measure(alignment, rod.sample, scene.length);
   const std::vector<double>& s = measured.arc_length;
@@ -191,17 +192,17 @@ ShapeCheck compared(const Scene& scene, const MeasuredShape& shape, Alignment la
   const std::optional<Eigen::Matrix3Xd> straight = straight_rod(scene, s);
   result.movement_m = straight ? rms(s, *straight - result.reference.points) : NAN;
   result.deviation = measured_deviation(scene, alignment, rod.sample, measured, result.movement_m);
-  result.excess_m = measured.excess_at_start_m + measured.excess_at_end_m;
-  result.between = parts_between(s, rod.sample, scene.length);
-  const WholeRod whole = whole_of(measured, alignment, rod.sample, scene.length);
-  result.whole_rms_m = whole.rms_m;
-  result.whole_max_m = whole.max_m;
+  result.length_beyond_ends_m = measured.excess_at_start_m + measured.excess_at_end_m;
+  result.between = intervals_between_points(s, rod.sample, scene.length);
+  const WholeRod whole = whole_rod_distances(measured, alignment, rod.sample, scene.length);
+  result.whole_rod_rms_m = whole.rms_m;
+  result.whole_rod_max_m = whole.max_m;
 
   add_worst_point(shape, measured, result);
   add_seen_part(shape, s, scene.length, result);
   result.measured_points = measured_points(scene, alignment.shape.points);
   result.hint = hint_of(result, measured);
-  result.direction_is_clear = alignment.other_rms_m > 1.05 * alignment.rms_m;
+  result.is_direction_determined = alignment.opposite_direction_rms_m > 1.05 * alignment.rms_m;
   return result;
 }
 
@@ -228,7 +229,7 @@ struct LaidStates {
 
   /// Adds a stable equilibrium that a search from the shape's points has found.
   void add(const energy_model::Equilibrium& near, const Scene& scene) {
-    const std::optional<std::size_t> added = add_state(scene, near, states);
+    const std::optional<std::size_t> added = insert_equilibrium(scene, near, states);
     if (!added) return;
     const auto at = static_cast<std::ptrdiff_t>(*added);
     Alignment alignment = aligner.align(Curve(states[*added].sample, scene.length));
@@ -251,8 +252,9 @@ std::optional<UnverifiedState> unverified_state(const Aligner& aligner,
   const bool is_open = rod.status == energy_model::SolveStatus::not_verified ||
                        rod.status == energy_model::SolveStatus::near_singular;
   if (!is_open || !(rod.residual >= 0 && rod.residual < at_rest)) return std::nullopt;
-  const Alignment laid = aligner.align(Curve(rod.sample, length));
-  const WholeRod whole = whole_of(measure(laid, rod.sample, length), laid, rod.sample, length);
+  const Alignment aligned = aligner.align(Curve(rod.sample, length));
+  const WholeRod whole =
+      whole_rod_distances(measure(aligned, rod.sample, length), aligned, rod.sample, length);
   return UnverifiedState{whole.rms_m, whole.max_m, rod.message};
 }
 
@@ -260,7 +262,7 @@ std::optional<UnverifiedState> unverified_state(const Aligner& aligner,
 double stretched_length(const Scene& scene, const energy_model::Equilibrium& rod) {
   if (scene.stretch != Stretch::counted) return scene.length;
   constexpr int samples = 1001;
-  return lengths_along(rod.sample(equal_arc_lengths(scene.length, samples)).points).back();
+  return arc_lengths_along(rod.sample(equal_arc_lengths(scene.length, samples)).points).back();
 }
 
 }  // namespace
@@ -269,20 +271,20 @@ ShapeCheck check_shape(const Scene& scene, const MeasuredShape& shape,
                        const ShapeCheckOptions& options) {
   const Aligner aligner(shape, scene.length, align_options(scene, options));
   const energy_model::Equilibrium lowest = solve_reference(scene, options.solve);
-  LaidStates laid(aligner, scene.length, all_states(scene, lowest, options.solve));
+  LaidStates aligned(aligner, scene.length, all_equilibria(scene, lowest, options.solve));
   std::optional<UnverifiedState> unverified;
-  if (laid.from_shape[laid.nearest()] > surely_nearest * scene.length) {
+  if (aligned.from_shape[aligned.nearest()] > nearest_shape_tolerance * scene.length) {
     MeasuredShape placed = shape;
-    placed.points = laid.alignments[laid.nearest()].pose.applied(shape.points);
-    const Shape on_rod = laid_by_grippers(placed, scene, aligner.arc_lengths());
-    if (const auto near = state_near(scene, on_rod, options.solve)) {
-      laid.add(*near, scene);
+    placed.points = aligned.alignments[aligned.nearest()].pose.applied(shape.points);
+    const Shape on_rod = aligned_by_grippers(placed, scene, aligner.arc_lengths());
+    if (const auto near = equilibrium_near(scene, on_rod, options.solve)) {
+      aligned.add(*near, scene);
       unverified = unverified_state(aligner, *near, scene.length);
     }
   }
-  const std::size_t nearest = laid.nearest();
-  std::vector<Alignment>& alignments = laid.alignments;
-  const std::vector<energy_model::Equilibrium>& states = laid.states;
+  const std::size_t nearest = aligned.nearest();
+  std::vector<Alignment>& alignments = aligned.alignments;
+  const std::vector<energy_model::Equilibrium>& states = aligned.states;
   const energy_model::Equilibrium& energy = states[nearest];
   ShapeCheck result = compared(scene, shape, std::move(alignments[nearest]), energy);
   for (std::size_t i = 0; i < states.size(); ++i) {
@@ -290,16 +292,17 @@ ShapeCheck check_shape(const Scene& scene, const MeasuredShape& shape,
   }
   result.unverified = std::move(unverified);
   result.stretched_length_m = stretched_length(scene, energy);
-  result.state = describe_state(scene, states, nearest, laid.from_shape);
+  result.state = describe_state(scene, states, nearest, aligned.from_shape);
   const double offset = distance_from_line(result.alignment.shape.points);
-  result.turn_is_clear = options.pose != PoseFreedom::rigid ||
-                         offset > std::max(3 * result.alignment.rms_m, 1e-6 * scene.length);
+  result.is_rotation_determined =
+      options.pose != PoseFreedom::rigid ||
+      offset > std::max(3 * result.alignment.rms_m, 1e-6 * scene.length);
 
   if (options.modulus == ModulusSearch::no) return result;
   const Aligner thin(thinned(shape), scene.length, align_options(scene, options));
   const ShapeDistance distance = [&](const energy_model::Equilibrium& reference) {
-    const Alignment laid = thin.align(Curve(reference.sample, scene.length));
-    return measure(laid, reference.sample, scene.length).rms_m;
+    const Alignment aligned = thin.align(Curve(reference.sample, scene.length));
+    return measure(aligned, reference.sample, scene.length).rms_m;
   };
   result.effective_modulus = fit_effective_modulus(scene, distance, energy, options.solve);
   result.modulus = result.effective_modulus.ratio * result.stiffness.value;
@@ -354,8 +357,8 @@ ShapeCheck check_trivial_shape(const TrivialShape& trivial, const Scene& scene,
     shape.arc_length = check.reference.arc_length;
   }
   const Aligner aligner(shape, scene.length, align_options(scene, options));
-  Alignment laid = aligner.align(Curve(check.rod.sample, scene.length));
-  return compared(scene, shape, std::move(laid), check.rod);
+  Alignment aligned = aligner.align(Curve(check.rod.sample, scene.length));
+  return compared(scene, shape, std::move(aligned), check.rod);
 }
 
 }  // namespace dlo::compare

@@ -35,20 +35,20 @@ ShapeTolerance default_tolerance(double length) {
 
 ShapeJudgement judge(const ShapeCheck& check, const ShapeTolerance& tolerance) {
   ShapeJudgement result;
-  const double rms = tolerance.part ? check.deviation.rms_m : check.whole_rms_m;
-  const double largest = tolerance.part ? check.deviation.max_m : check.whole_max_m;
+  const double rms = tolerance.part ? check.deviation.rms_m : check.whole_rod_rms_m;
+  const double largest = tolerance.part ? check.deviation.max_m : check.whole_rod_max_m;
   // A single point has no mean along the rod.
   const bool is_single = check.measured_points == 1;
   result.judged_m = is_single ? check.deviation.max_m : tolerance.largest ? largest : rms;
   const bool near = result.judged_m <= tolerance.allowed_m;
-  double seen = check.seen_share;
+  double observed_share = check.observed_share;
   std::vector<std::string> untold;
   for (const RodPart& part : check.between) {
-    if (part.untold_m <= tolerance.allowed_m) continue;
-    seen -= (part.to_m - part.from_m) / check.length_m;
+    if (part.interpolation_error_m <= tolerance.allowed_m) continue;
+    observed_share -= (part.to_m - part.from_m) / check.length_m;
     untold.push_back(arc_range(part.from_m, part.to_m));
   }
-  const bool enough = seen >= tolerance.least_seen_share;
+  const bool enough = observed_share >= tolerance.least_observed_share;
   const bool determined = enough && (tolerance.part || untold.empty());
   result.verdict = !near        ? ShapeVerdict::fail
                    : determined ? ShapeVerdict::pass
@@ -65,7 +65,8 @@ ShapeJudgement judge(const ShapeCheck& check, const ShapeTolerance& tolerance) {
   }
   if (!enough) {
     reasons.push_back(fmt::format("only {:.4g} % of the rod is observed, {:.4g} % is required",
-                                  std::max(0.0, seen) * 100, tolerance.least_seen_share * 100));
+                                  std::max(0.0, observed_share) * 100,
+                                  tolerance.least_observed_share * 100));
   }
   if (!untold.empty()) {
     reasons.push_back(

@@ -22,7 +22,7 @@ void read_calibrated_material(StrictTable& table, CalibratedRod& rod) {
     (void)entry.text("name");
     (void)entry.optional_text("source");
     rod.stiffness = entry.number("youngs_modulus", Dimension::pressure, Range::positive());
-    rod.heaviness = entry.number("density", Dimension::density, Range::positive());
+    rod.mass_parameter = entry.number("density", Dimension::density, Range::positive());
     entry.finish();
   }
 }
@@ -36,7 +36,8 @@ void read_calibrated_stiffness(StrictTable& table, CalibratedRod& rod) {
   // Two stiffnesses are scaled by one factor, so the first one determines it.
   rod.stiffness = EI.x() > 0 ? EI.x() : EI.y();
   if (!(*rod.stiffness > 0)) table.fail("bending_stiffness", "not positive (allowed: > 0)");
-  rod.heaviness = table.number("mass_per_length", Dimension::mass_per_length, Range::positive());
+  rod.mass_parameter =
+      table.number("mass_per_length", Dimension::mass_per_length, Range::positive());
 }
 
 ClampCorrection read_correction(StrictTable& entry) {
@@ -98,7 +99,7 @@ Scene calibrated_scene(Scene scene, const CalibratedRod& rod) {
     }
     scene.scale_modulus(*rod.stiffness / stiffness.value);
   }
-  if (rod.heaviness) scene.scale_density(*rod.heaviness / scene.heaviness().value);
+  if (rod.mass_parameter) scene.scale_density(*rod.mass_parameter / scene.mass_parameter().value);
   if (rod.torsional_stiffness) {
     scene.scale_torsion(*rod.torsional_stiffness / scene.twisting_stiffness());
   }
@@ -114,7 +115,7 @@ Scene calibrated_scene(Scene scene, const CalibratedRod& rod) {
                       scene.file, correction.gripper + 1, scene.grippers.size()));
     }
     Gripper& gripper = scene.grippers[correction.gripper];
-    if (gripper.direction) turn_clamp(gripper, correction.rotation);
+    if (gripper.direction) rotate_clamp(gripper, correction.rotation);
     gripper.position += correction.displacement;
   }
   if (rod.camera_tilt.isZero(0)) return scene;
@@ -124,7 +125,7 @@ Scene calibrated_scene(Scene scene, const CalibratedRod& rod) {
         "to scenes whose rod is bent by weight alone (allowed: such scenes, or no camera_tilt)",
         scene.file));
   }
-  turn_scene(scene, rod.camera_tilt);
+  rotate_scene(scene, rod.camera_tilt);
   return scene;
 }
 

@@ -62,9 +62,10 @@ Whitened whitened(Eigen::MatrixXd columns, const std::vector<double>& step,
   Eigen::RowVectorXd state = Eigen::RowVectorXd::Zero(columns.cols());
   double variance = covariance.share;
   for (Eigen::Index i = 0; i < columns.rows(); ++i) {
-    const double kept = std::exp(-step[static_cast<std::size_t>(i)] / covariance.length);
-    state *= kept;
-    variance = kept * kept * variance + (1 - kept * kept) * covariance.share;
+    const double correlation = std::exp(-step[static_cast<std::size_t>(i)] / covariance.length);
+    state *= correlation;
+    variance =
+        correlation * correlation * variance + (1 - correlation * correlation) * covariance.share;
     // Errors at equal arc lengths without white noise would be identical, with zero innovation.
     const double innovation = std::max(variance + white, 1e-12);
     const double gain = variance / innovation;

@@ -41,24 +41,24 @@ std::optional<std::vector<Movement>> FittedRods::movements(std::size_t shape,
     const Unknown& unknown = unknowns_[k];
     if (unknown.shape && *unknown.shape != shape) continue;
     const auto number = static_cast<Eigen::Index>(k);
-    if (unknown.stride == 0) {
+    if (unknown.difference_step == 0) {
       result.emplace_back(measured_.frame_columns() + number,
                           Eigen::Matrix3Xd::Zero(3, points.cols()));
       continue;
     }
     // Differences are taken to the side on which a shape exists: the grippers of a straight rod can
     // only approach each other.
-    for (const double stride : {unknown.stride, -unknown.stride}) {
-      Eigen::VectorXd beside = values;
-      beside[number] += stride;
-      const std::optional<energy_model::Equilibrium> rod = solve(shape, beside);
+    for (const double difference_step : {unknown.difference_step, -unknown.difference_step}) {
+      Eigen::VectorXd perturbed = values;
+      perturbed[number] += difference_step;
+      const std::optional<energy_model::Equilibrium> rod = solve(shape, perturbed);
       if (!rod) {
-        if (stride < 0) return std::nullopt;
+        if (difference_step < 0) return std::nullopt;
         continue;
       }
-      Eigen::Matrix3Xd way = measured_.curve(shape, *rod).points(s) - points;
-      if (way.colwise().norm().maxCoeff() < least_movement * here.length()) way.setZero();
-      result.emplace_back(measured_.frame_columns() + number, way / stride);
+      Eigen::Matrix3Xd movement = measured_.curve(shape, *rod).points(s) - points;
+      if (movement.colwise().norm().maxCoeff() < least_movement * here.length()) movement.setZero();
+      result.emplace_back(measured_.frame_columns() + number, movement / difference_step);
       break;
     }
   }

@@ -30,10 +30,11 @@ struct MaterialPoint {
 
 /// A number that is fitted to measured shapes.
 struct Unknown {
-  double stride = 0;  ///< stride of differences, in the number's unit; 0: no shape depends on it
+  double difference_step =
+      0;  ///< stride of differences, in the number's unit; 0: no shape depends on it
   std::optional<std::size_t> shape;  ///< index of the only shape that has it; empty: all have
   /// Prior standard deviation about zero; infinite: no prior.
-  double known_before = std::numeric_limits<double>::infinity();
+  double prior_deviation = std::numeric_limits<double>::infinity();
   double longest_step = std::numeric_limits<double>::infinity();  ///< longest step for which the
                                                                   ///< fit is nearly linear
 };
@@ -63,9 +64,9 @@ class FittedRods {
 
   /// An equilibrium for each shape from which the next solve starts; empty: search.
   using Rods = std::vector<std::optional<energy_model::Equilibrium>>;
-  void go_on_from(Rods rods) { last_ = std::move(rods); }
+  void set_initial_rods(Rods rods) { last_ = std::move(rods); }
   /// Makes the next solve of each shape a search.
-  void search_next() { last_ = Rods(measured_.size()); }
+  void clear_initial_rods() { last_ = Rods(measured_.size()); }
   /// Returns the rods at the last values.
   [[nodiscard]] const Rods& rods() const { return last_; }
 

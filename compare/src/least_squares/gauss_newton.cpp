@@ -38,16 +38,16 @@ constexpr int most_halvings = 8;
 constexpr double deviance_tolerance = 1e-5;
 
 /// Returns the step of all numbers except the first to the least deviance, if the first one moves
-/// by `held`.
+/// by `first_step`.
 /// @param gradient  result of log_posterior_gradient(), of all numbers
 Eigen::VectorXd step_of_others(const LinearFit& fit, double variance, const Eigen::VectorXd& before,
-                               const Eigen::VectorXd& gradient, double held) {
+                               const Eigen::VectorXd& gradient, double first_step) {
   const Eigen::Index others = before.size() - 1;
   const auto of_others = fit.design.rightCols(others);
   Eigen::MatrixXd information = of_others.transpose() * of_others / variance;
   information.diagonal() += before.tail(others).cwiseAbs2();
   const Eigen::VectorXd left =
-      gradient.tail(others) - of_others.transpose() * fit.design.col(0) / variance * held;
+      gradient.tail(others) - of_others.transpose() * fit.design.col(0) / variance * first_step;
   return information.completeOrthogonalDecomposition().solve(left);
 }
 
@@ -56,14 +56,14 @@ Eigen::VectorXd step_of_others(const LinearFit& fit, double variance, const Eige
 /// to frames
 LinearFit linear_fit(const std::vector<ResidualSeries>& series, const ErrorCovariance& covariance,
                      Eigen::Index frames) {
-  Innovations seen = innovations(series, covariance);
-  LinearFit result{seen.design.rightCols(seen.design.cols() - frames), std::move(seen.residual),
-                   seen.design.rows()};
+  Innovations whitened = innovations(series, covariance);
+  LinearFit result{whitened.design.rightCols(whitened.design.cols() - frames),
+                   std::move(whitened.residual), whitened.design.rows()};
   if (frames == 0) return result;
-  Eigen::ColPivHouseholderQR<Eigen::MatrixXd> qr(seen.design.leftCols(frames));
+  Eigen::ColPivHouseholderQR<Eigen::MatrixXd> qr(whitened.design.leftCols(frames));
   qr.setThreshold(frame_rank_tolerance);
   const Eigen::MatrixXd basis =
-      qr.householderQ() * Eigen::MatrixXd::Identity(seen.design.rows(), qr.rank());
+      qr.householderQ() * Eigen::MatrixXd::Identity(whitened.design.rows(), qr.rank());
   result.design -= basis * (basis.transpose() * result.design).eval();
   result.residual -= basis * (basis.transpose() * result.residual).eval();
   result.freedom -= qr.rank();
@@ -95,7 +95,8 @@ VarianceEstimate variance_under(const std::vector<ResidualSeries>& series,
   return {left.squaredNorm() / std::max(1.0, freedom), freedom};
 }
 
-std::vector<bool> unseen(const LinearFit& fit, double variance, const Eigen::VectorXd& before) {
+std::vector<bool> undetermined_numbers(const LinearFit& fit, double variance,
+                                       const Eigen::VectorXd& before) {
   const Eigen::MatrixXd information = information_of(fit, variance, before);
   const Eigen::VectorXd deviations =
       information.diagonal().unaryExpr([](double x) { return x > 0 ? 1 / std::sqrt(x) : 0.0; });
@@ -130,7 +131,7 @@ GaussNewton::GaussNewton(FittedRods& rods, Eigen::VectorXd values,
                          const GaussNewtonOptions& options)
     : rods_(rods), options_(options), before_(values.size()), values_(std::move(values)) {
   for (Eigen::Index k = 0; k < before_.size(); ++k) {
-    before_[k] = 1 / rods.unknowns()[static_cast<std::size_t>(k)].known_before;
+    before_[k] = 1 / rods.unknowns()[static_cast<std::size_t>(k)].prior_deviation;
   }
 }
 
@@ -146,8 +147,8 @@ double GaussNewton::deviance_at(const Eigen::VectorXd& values) {
   const std::optional<std::vector<ResidualSeries>> series =
       rods_.residuals(values, FittedRods::Columns::frames);
   if (!series) return INFINITY;
-  const LinearFit there = linear_fit(*series, {}, rods_.measured().frame_columns());
-  return there.residual.squaredNorm() / weight() + penalty(values);
+  const LinearFit shifted_fit = linear_fit(*series, {}, rods_.measured().frame_columns());
+  return shifted_fit.residual.squaredNorm() / weight() + penalty(values);
 }
 
 void GaussNewton::measure_variance() {
@@ -190,13 +191,13 @@ bool GaussNewton::descend() {
     const Eigen::VectorXd deviations = posterior_.diagonal().cwiseSqrt();
     if ((step.array().abs() <= last_step(deviations[0]) * deviations.array()).all()) return true;
     const double here = deviance();
-    const double promised = (linear_.residual - linear_.design * step).squaredNorm() / weight() +
-                            penalty(values_ + step);
-    if (here - promised < options_.least_gain * here) return true;
+    const double predicted = (linear_.residual - linear_.design * step).squaredNorm() / weight() +
+                             penalty(values_ + step);
+    if (here - predicted < options_.least_gain * here) return true;
     // Every trial starts from the current rods, not from those of a longer trial step.
     int halvings = 0;
     while (halvings < most_halvings && !(deviance_at(values_ + step) < here)) {
-      rods_.go_on_from(here_);
+      rods_.set_initial_rods(here_);
       step /= 2;
       ++halvings;
     }
@@ -223,10 +224,10 @@ Eigen::VectorXd GaussNewton::next_step() const {
   const Eigen::VectorXd down = log_posterior_gradient(linear_, weight(), before_, values_);
   Eigen::VectorXd step = posterior_ * down;
   const double longest = unknowns.front().longest_step;
-  const double there = std::clamp(values_[0] + std::clamp(step[0], -longest, longest),
-                                  options_.lowest, options_.highest);
-  if (values_[0] + step[0] != there) {
-    step[0] = there - values_[0];
+  const double bounded = std::clamp(values_[0] + std::clamp(step[0], -longest, longest),
+                                    options_.lowest, options_.highest);
+  if (values_[0] + step[0] != bounded) {
+    step[0] = bounded - values_[0];
     if (step.size() > 1) {
       step.tail(step.size() - 1) = step_of_others(linear_, weight(), before_, down, step[0]);
     }
@@ -243,27 +244,27 @@ Eigen::VectorXd GaussNewton::next_step() const {
 
 double GaussNewton::marginal_slope() {
   const Eigen::Index others = before_.size() - 1;
-  const double away = std::sqrt(posterior_(0, 0)) / 2;
-  if (others == 0 || !(away > 0) || !std::isfinite(away)) return 0;
+  const double offset = std::sqrt(posterior_(0, 0)) / 2;
+  if (others == 0 || !(offset > 0) || !std::isfinite(offset)) return 0;
   double difference = 0;
   for (const double side : {1.0, -1.0}) {
-    rods_.go_on_from(here_);
+    rods_.set_initial_rods(here_);
     const std::optional<std::vector<ResidualSeries>> series =
-        rods_.residuals(values_beside(values_[0] + side * away), FittedRods::Columns::all);
+        rods_.residuals(conditional_optimum(values_[0] + side * offset), FittedRods::Columns::all);
     if (!series) return 0;
-    const LinearFit there = linear_fit(*series, {}, rods_.measured().frame_columns());
-    difference += side * log_determinant(there, weight(), before_);
+    const LinearFit shifted_fit = linear_fit(*series, {}, rods_.measured().frame_columns());
+    difference += side * log_determinant(shifted_fit, weight(), before_);
   }
-  return difference / (2 * away);
+  return difference / (2 * offset);
 }
 
-Eigen::VectorXd GaussNewton::values_beside(double first) const {
+Eigen::VectorXd GaussNewton::conditional_optimum(double first) const {
   return values_ + posterior_.col(0) / posterior_(0, 0) * (first - values_[0]);
 }
 
 double GaussNewton::profile(double first) {
   const Eigen::Index others = before_.size() - 1;
-  Eigen::VectorXd values = values_beside(first);
+  Eigen::VectorXd values = conditional_optimum(first);
   double least = INFINITY;
   LinearFit chord = linear_;
   constexpr int most_chords = 20;

@@ -17,8 +17,8 @@ struct LinearFit {
   Eigen::Index freedom = 0;  ///< number of rows minus rank of the frames' columns
 };
 
-/// Returns the covariance of the numbers after the fit. For numbers that are unseen() it is that of
-/// the pseudoinverse, which is no variance.
+/// Returns the covariance of the numbers after the fit. For numbers that are undetermined_numbers()
+/// it is that of the pseudoinverse, which is no variance.
 /// @param variance  of the errors
 /// @param before  1 over the prior standard deviation of each number about zero
 [[nodiscard]] Eigen::MatrixXd posterior(const LinearFit& fit, double variance,
@@ -47,8 +47,8 @@ struct VarianceEstimate {
 
 /// Returns for each number whether neither the points nor priors determine it, alone or in
 /// combination with others. The variance of such a number is infinite.
-[[nodiscard]] std::vector<bool> unseen(const LinearFit& fit, double variance,
-                                       const Eigen::VectorXd& before);
+[[nodiscard]] std::vector<bool> undetermined_numbers(const LinearFit& fit, double variance,
+                                                     const Eigen::VectorXd& before);
 
 /// Returns the gradient of the log posterior density by the numbers, which is minus half that of
 /// the deviance: the sum of squares divided by the variance, plus the priors' terms.
@@ -92,7 +92,7 @@ class GaussNewton {
 
   /// Sets the variance by which squares are divided in the sum with the priors, from the next
   /// descend() on [m^2].
-  void weigh(double weight) { given_weight_ = weight; }
+  void set_data_variance(double weight) { given_weight_ = weight; }
 
   // Results at the values, after descend():
   [[nodiscard]] const Eigen::VectorXd& values() const { return values_; }
@@ -112,7 +112,7 @@ class GaussNewton {
 
   /// Returns values with the given first number and the others at the least deviance, to first
   /// order.
-  [[nodiscard]] Eigen::VectorXd values_beside(double first) const;
+  [[nodiscard]] Eigen::VectorXd conditional_optimum(double first) const;
 
   /// Returns the derivative by the first number of the term that marginalisation over the others
   /// adds to the deviance (Laplace's approximation: the logarithm of the determinant of the others'

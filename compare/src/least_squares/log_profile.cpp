@@ -14,7 +14,7 @@ const double profile_step = std::log(10.0) / profile_steps_per_decade;
 /// Ratio of a sum of squares to the least one above which it is outside any interval of interest
 /// (Student's t beyond 97.5 % with 2 degrees of freedom: 1 + 4.3^2 / 2 = 10). Between steps of a
 /// quarter of a decade, a local minimum above it cannot be the least one.
-constexpr double far_above = 100;
+constexpr double irrelevant_ratio = 100;
 
 }  // namespace
 
@@ -50,16 +50,16 @@ double LogProfile::value_at(int step) {
   return value;
 }
 
-bool LogProfile::has_risen(int way) const {
-  const int end = way < 0 ? left_ : right_;
+bool LogProfile::has_risen(int side) const {
+  const int end = side < 0 ? left_ : right_;
   const auto value = [&](int step) {
     const auto found = values_.find(profile_step * step);
     return found == values_.end() ? std::numeric_limits<double>::quiet_NaN() : found->second;
   };
-  if (!(value(end) > far_above * minimum_.value)) return false;
+  if (!(value(end) > irrelevant_ratio * minimum_.value)) return false;
   for (int k = 0; k < profile_steps_per_decade; ++k) {
     // Plateaus count as rising: beyond them a soft rod hangs and a stiff one is straight.
-    if (!(value(end - way * k) >= 0.9 * value(end - way * (k + 1)))) return false;
+    if (!(value(end - side * k) >= 0.9 * value(end - side * (k + 1)))) return false;
   }
   return true;
 }
@@ -86,7 +86,7 @@ void LogProfile::refine() {
     const auto before = std::prev(at);
     const auto after = std::next(at);
     const bool lowest = at->second <= before->second && at->second <= after->second;
-    if (!lowest || !(at->second <= far_above * minimum_.value)) continue;
+    if (!lowest || !(at->second <= irrelevant_ratio * minimum_.value)) continue;
     const Scan around{{before->first, at->first, after->first},
                       {before->second, at->second, after->second}};
     const Minimum found = minimum_near(function_, around);
@@ -95,15 +95,15 @@ void LogProfile::refine() {
   }
 }
 
-std::optional<double> LogProfile::outermost(double level, int way) {
-  const auto end = [&] { return way < 0 ? *values_.begin() : *std::prev(values_.end()); };
+std::optional<double> LogProfile::outermost_crossing(double level, int side) {
+  const auto end = [&] { return side < 0 ? *values_.begin() : *std::prev(values_.end()); };
   // The level may be higher than the values that the search reached.
   while (!(end().second > level && std::isfinite(end().second)) &&
-         (way < 0 ? left_ > first_ : right_ < last_)) {
-    (void)value_at(way < 0 ? --left_ : ++right_);
+         (side < 0 ? left_ > first_ : right_ < last_)) {
+    (void)value_at(side < 0 ? --left_ : ++right_);
   }
   std::vector<std::pair<double, double>> inwards(values_.begin(), values_.end());
-  if (way > 0) std::reverse(inwards.begin(), inwards.end());
+  if (side > 0) std::reverse(inwards.begin(), inwards.end());
   std::optional<double> outside;
   for (const auto& [x, value] : inwards) {
     if (!std::isfinite(value)) continue;
@@ -116,15 +116,15 @@ std::optional<double> LogProfile::outermost(double level, int way) {
       const double there = function_(at);
       return std::isfinite(there) ? there : 0.0;
     };
-    return crossing(known, x, *outside, level);
+    return find_crossing(known, x, *outside, level);
   }
   return std::nullopt;
 }
 
 LogProfile::Interval LogProfile::below(double level) {
   Interval result;
-  result.low = outermost(level, -1);
-  result.high = outermost(level, 1);
+  result.low = outermost_crossing(level, -1);
+  result.high = outermost_crossing(level, 1);
   return result;
 }
 

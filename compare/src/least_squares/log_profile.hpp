@@ -38,10 +38,10 @@ class LogProfile {
 
  private:
   [[nodiscard]] double value_at(int step);
-  [[nodiscard]] bool has_risen(int way) const;
+  [[nodiscard]] bool has_risen(int side) const;
   void search();
   void refine();
-  [[nodiscard]] std::optional<double> outermost(double level, int way);
+  [[nodiscard]] std::optional<double> outermost_crossing(double level, int side);
 
   Function function_;
   int first_, last_;          // range of steps from 0

@@ -23,13 +23,13 @@ namespace {
 constexpr double in_plane = 1e-8;
 
 /// Returns the number of measured coordinates of a shape.
-int measured_numbers(const Aligner& aligner, bool flat) {
+int measured_coordinates(const Aligner& aligner, bool flat) {
   const int per_point = (aligner.arc_lengths() == ArcLengths::nearest ? 2 : 3) - (flat ? 1 : 0);
   return per_point * static_cast<int>(aligner.points());
 }
 
 /// Number of samples along a rod.
-constexpr int looks = 201;
+constexpr int plane_samples = 201;
 
 /// Whether energy_model::Problem::confined_to_plane applies to a scene; a scene whose clamps twist
 /// the rod has no plane.
@@ -49,8 +49,8 @@ Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> extents(const Eigen::Matrix3Xd& p
 }
 
 /// Returns the directions in which a point's residual is observed, as columns.
-std::vector<Eigen::Matrix3Xd> seen_directions(const Alignment& alignment, const Curve& curve,
-                                              bool flat) {
+std::vector<Eigen::Matrix3Xd> observed_directions(const Alignment& alignment, const Curve& curve,
+                                                  bool flat) {
   const std::vector<double>& s = alignment.shape.arc_length;
   const bool across = alignment.arc_lengths == ArcLengths::nearest;
   const Eigen::Matrix3d principal = extents(alignment.shape.points).eigenvectors();
@@ -108,7 +108,7 @@ MeasuredShapes::MeasuredShapes(const std::vector<Scene>& scenes,
                                const MeasuredOptions& options, const Timer& timer)
     : options_(options), timer_(timer) {
   for (std::size_t i = 0; i < scenes.size(); ++i) {
-    const Eigen::Vector3d up = up_of(scenes[i], options_.pose);
+    const Eigen::Vector3d up = upward_direction(scenes[i], options_.pose);
     Aligner aligner(shapes[i], scenes[i].length,
                     {.pose = options_.pose,
                      .arc_lengths = options_.arc_lengths,
@@ -123,19 +123,19 @@ MeasuredShapes::MeasuredShapes(const std::vector<Scene>& scenes,
 
 Eigen::Index MeasuredShapes::points() const {
   Eigen::Index sum = 0;
-  for (const OneShape& shape : shapes_) sum += shape.aligner.points();
+  for (const ShapeData& shape : shapes_) sum += shape.aligner.points();
   return sum;
 }
 
 int MeasuredShapes::numbers() const {
   int sum = 0;
-  for (const OneShape& shape : shapes_) sum += measured_numbers(shape.aligner, shape.flat);
+  for (const ShapeData& shape : shapes_) sum += measured_coordinates(shape.aligner, shape.flat);
   return sum - frame_numbers();
 }
 
 int MeasuredShapes::frame_numbers() const {
   int sum = 0;
-  for (const OneShape& shape : shapes_) sum += numbers_of_frame(shape.flat, options_.pose);
+  for (const ShapeData& shape : shapes_) sum += numbers_of_frame(shape.flat, options_.pose);
   return sum;
 }
 
@@ -152,8 +152,8 @@ bool MeasuredShapes::is_confined(std::size_t shape, const Scene& scene) const {
   return options_.flat == FlatShapes::confined && shapes_[shape].flat && can_be_confined(scene);
 }
 
-double MeasuredShapes::way_out_of_plane(std::size_t shape, const Scene& scene,
-                                        const energy_model::Equilibrium& rod) {
+double MeasuredShapes::out_of_plane_displacement(std::size_t shape, const Scene& scene,
+                                                 const energy_model::Equilibrium& rod) {
   if (!is_confined(shape, scene)) return 0;
   energy_model::Equilibrium free = solve(energy_problem(scene), scene.file, &rod);
   // An unstable rod is a saddle in its plane, and steps from it converge back to it.
@@ -162,16 +162,17 @@ double MeasuredShapes::way_out_of_plane(std::size_t shape, const Scene& scene,
   }
   if (!energy_model::succeeded(free.status)) return 0;
   const Eigen::Vector3d normal = *scene.plane_normal();
-  const Eigen::Matrix3Xd points = free.sample(equal_arc_lengths(scene.length, looks)).points;
+  const Eigen::Matrix3Xd points =
+      free.sample(equal_arc_lengths(scene.length, plane_samples)).points;
   const Eigen::RowVectorXd out = normal.transpose() * (points.colwise() - points.col(0));
-  const double way = out.cwiseAbs().maxCoeff();
-  return way > in_plane * scene.length ? way : 0;
+  const double distance = out.cwiseAbs().maxCoeff();
+  return distance > in_plane * scene.length ? distance : 0;
 }
 
 double MeasuredShapes::time_left() const {
   const double limit = options_.solve.time_limit;
-  const double left = limit * static_cast<double>(size()) - timer_.seconds();
-  if (left > 0) return std::min(limit, left);
+  const double remaining = limit * static_cast<double>(size()) - timer_.seconds();
+  if (remaining > 0) return std::min(limit, remaining);
   throw ConvergenceError(
       fmt::format("calibrate: not done within {:g} s{}, after {} equilibria (--time-limit)", limit,
                   size() > 1 ? " per scene" : "", solves_));
@@ -182,18 +183,18 @@ energy_model::Equilibrium MeasuredShapes::solve_near(std::size_t shape, const Sc
   if (reference_model(scene) == Model::exact) return {};
   MeasuredShape placed = shapes_[shape].file;
   placed.points = alignment(shape, like).pose.applied(placed.points);
-  const Shape laid = laid_by_grippers(placed, scene, shapes_[shape].aligner.arc_lengths());
-  if (laid.arc_length.size() < 2) return {};
+  const Shape aligned = aligned_by_grippers(placed, scene, shapes_[shape].aligner.arc_lengths());
+  if (aligned.arc_length.size() < 2) return {};
   energy_model::Problem problem = energy_problem(scene);
   problem.confined_to_plane = is_confined(shape, scene);
-  const double left = time_left();
+  const double remaining = time_left();
   ++solves_;
   try {
     energy_model::Equilibrium rod =
-        energy_model::energy_near(problem, laid.arc_length, laid.points,
+        energy_model::energy_near(problem, aligned.arc_length, aligned.points,
                                   {.terms = options_.solve.terms,
                                    .max_evaluations = options_.solve.max_evaluations,
-                                   .time_limit = left});
+                                   .time_limit = remaining});
     evaluations_ += rod.evaluations;
     return rod;
   } catch (const std::invalid_argument& error) {
@@ -219,13 +220,13 @@ energy_model::Equilibrium MeasuredShapes::solve_stretched(const Scene& scene,
 energy_model::Equilibrium MeasuredShapes::solve(const energy_model::Problem& problem,
                                                 const std::string& file,
                                                 const energy_model::Equilibrium* start) {
-  const double left = time_left();
+  const double remaining = time_left();
   ++solves_;
   try {
     energy_model::Equilibrium rod =
         energy_model::solve_energy(problem, {.terms = options_.solve.terms,
                                              .max_evaluations = options_.solve.max_evaluations,
-                                             .time_limit = left,
+                                             .time_limit = remaining,
                                              .start = start});
     evaluations_ += rod.evaluations;
     if (rod.status == energy_model::SolveStatus::evaluation_limit) ++limited_solves_;
@@ -249,12 +250,13 @@ std::vector<ResidualSeries> MeasuredShapes::residuals(std::size_t shape, const C
                                                       const Alignment& alignment,
                                                       const std::vector<Movement>& movements,
                                                       Eigen::Index numbers) const {
-  const OneShape& measured = shapes_[shape];
+  const ShapeData& measured = shapes_[shape];
   const Eigen::Index columns = frame_columns_ + numbers;
   const std::vector<double>& s = alignment.shape.arc_length;
   const Eigen::Matrix3Xd& points = alignment.shape.points;
   const Eigen::Vector3d centre = points.rowwise().mean();
-  const std::vector<Eigen::Matrix3Xd> directions = seen_directions(alignment, curve, measured.flat);
+  const std::vector<Eigen::Matrix3Xd> directions =
+      observed_directions(alignment, curve, measured.flat);
   std::vector<ResidualSeries> result(static_cast<std::size_t>(directions.front().cols()),
                                      {shape, s, Eigen::VectorXd::Zero(points.cols()),
                                       Eigen::MatrixXd::Zero(points.cols(), columns)});

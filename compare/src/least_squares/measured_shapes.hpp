@@ -74,8 +74,8 @@ class MeasuredShapes {
                                                      const energy_model::Equilibrium& like);
   /// Returns how far a rod that was confined leaves its plane without the confinement [m]; 0 if it
   /// does not.
-  [[nodiscard]] double way_out_of_plane(std::size_t shape, const Scene& scene,
-                                        const energy_model::Equilibrium& rod);
+  [[nodiscard]] double out_of_plane_displacement(std::size_t shape, const Scene& scene,
+                                                 const energy_model::Equilibrium& rod);
 
   /// Returns a rod as a curve with which shapes are aligned.
   [[nodiscard]] Curve curve(std::size_t shape, const energy_model::Equilibrium& rod) const {
@@ -119,7 +119,7 @@ class MeasuredShapes {
   [[nodiscard]] Eigen::VectorXd root_weights(const std::vector<double>& s,
                                              const Eigen::Matrix3Xd& points) const;
 
-  struct OneShape {
+  struct ShapeData {
     MeasuredShape file;
     Aligner aligner;
     double length;         // length of its rod [m]
@@ -129,7 +129,7 @@ class MeasuredShapes {
   };
 
   MeasuredOptions options_;
-  std::vector<OneShape> shapes_;
+  std::vector<ShapeData> shapes_;
   Eigen::Index frame_columns_ = 0;
   long solves_ = 0;
   long evaluations_ = 0;

@@ -5,8 +5,8 @@
 
 namespace dlo::compare {
 
-Eigen::Matrix3Xd ways_across(const Eigen::Vector3d& direction,
-                             const std::optional<Eigen::Vector3d>& normal) {
+Eigen::Matrix3Xd rotation_axes(const Eigen::Vector3d& direction,
+                               const std::optional<Eigen::Vector3d>& normal) {
   if (normal) return *normal;
   Eigen::Matrix3Xd ways(3, 2);
   const Eigen::Vector3d first = direction.unitOrthogonal();
@@ -14,12 +14,12 @@ Eigen::Matrix3Xd ways_across(const Eigen::Vector3d& direction,
   return ways;
 }
 
-Eigen::Matrix3Xd ways_of_place(const std::optional<Eigen::Vector3d>& normal) {
+Eigen::Matrix3Xd translation_directions(const std::optional<Eigen::Vector3d>& normal) {
   if (!normal) return Eigen::Matrix3d::Identity();
-  return ways_across(*normal, std::nullopt);
+  return rotation_axes(*normal, std::nullopt);
 }
 
-void turn_clamp(Gripper& clamp, const Eigen::Vector3d& turn) {
+void rotate_clamp(Gripper& clamp, const Eigen::Vector3d& turn) {
   const double angle = turn.norm();
   if (!(angle > 0)) return;
   const Eigen::AngleAxisd rotation(angle, turn / angle);
@@ -34,7 +34,7 @@ bool is_bent_by_weight_alone(const Scene& scene) {
          scene.distributed_loads.empty() && !scene.drag && scene.obstacles.empty() && !moves;
 }
 
-void turn_scene(Scene& scene, const Eigen::Vector3d& turn) {
+void rotate_scene(Scene& scene, const Eigen::Vector3d& turn) {
   const double angle = turn.norm();
   if (!(angle > 0)) return;
   const Eigen::AngleAxisd rotation(angle, turn / angle);
@@ -42,11 +42,11 @@ void turn_scene(Scene& scene, const Eigen::Vector3d& turn) {
   scene.gravity = rotation * scene.gravity;
   for (Gripper& gripper : scene.grippers) {
     gripper.position = about + rotation * (gripper.position - about);
-    if (gripper.direction) turn_clamp(gripper, turn);
+    if (gripper.direction) rotate_clamp(gripper, turn);
   }
 }
 
-void bend_by_nature(Scene& scene, std::size_t term, const Eigen::Vector2d& curvature) {
+void increase_natural_curvature(Scene& scene, std::size_t term, const Eigen::Vector2d& curvature) {
   if (curvature.isZero(0)) return;
   if (term == 0) {
     scene.natural_strain.head<2>() += curvature;

@@ -20,7 +20,7 @@ constexpr double one_degree = std::numbers::pi / 180;
 /// Largest number that is accepted. Models have smaller ones, and products of two do not overflow.
 constexpr double largest_number = 1e12;
 
-std::vector<std::string> words_of(std::string_view text) {
+std::vector<std::string> split_words(std::string_view text) {
   std::istringstream words{std::string(text)};
   return {std::istream_iterator<std::string>(words), {}};
 }
@@ -233,8 +233,8 @@ void MjcfNode::require_known() const {
   if (known == nullptr) {
     fail("has no counterpart in a rod's scene, or is unknown (allowed: a model without it)");
   }
-  const std::vector<std::string> read = words_of(known->read);
-  const std::vector<std::string> without_effect = words_of(known->without_effect);
+  const std::vector<std::string> read = split_words(known->read);
+  const std::vector<std::string> without_effect = split_words(known->without_effect);
   for (const pugi::xml_attribute& attribute : element.attributes()) {
     const std::string_view name = attribute.name();
     if (std::ranges::count(read, name) + std::ranges::count(without_effect, name) > 0) continue;

@@ -71,7 +71,7 @@ struct MjcfSpring {
 
 /// Whether two lengths, masses or stiffnesses of a rod are equal within 0.1 %, the rounding of
 /// files.
-[[nodiscard]] bool are_alike(double a, double b);
+[[nodiscard]] bool nearly_equal(double a, double b);
 
 /// Computes the stiffnesses that correspond to a body's joints and its cable plugin.
 /// @param direction  direction of its segment in the body, unit vector

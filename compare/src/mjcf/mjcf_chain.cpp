@@ -17,9 +17,9 @@ using Eigen::Vector3d;
 
 /// Largest distance of a point from the axis, divided by the length of a segment, at which it
 /// counts as on the axis [-].
-constexpr double on_axis = 1e-3;
+constexpr double axis_tolerance = 1e-3;
 /// Largest angle between segments that count as collinear [rad].
-constexpr double straight = 1e-6;
+constexpr double collinear_angle = 1e-6;
 
 /// Finds the chain, segment by segment.
 class ChainFinder {
@@ -80,7 +80,7 @@ class ChainFinder {
     for (std::size_t i = 1; i < world_.bodies.size(); ++i) {
       const MjcfBody& body = world_.bodies[i];
       if (!body.moves) continue;
-      if (is_empty(i)) {
+      if (is_marker_body(i)) {
         chain_.notes.push_back(
             fmt::format("{} is ignored: it has no mass and no joint", name_of(i)));
         continue;
@@ -116,7 +116,7 @@ class ChainFinder {
   }
 
   /// Whether a body only names a position: it has no joint, geom, mass or nested body.
-  [[nodiscard]] bool is_empty(std::size_t i) const {
+  [[nodiscard]] bool is_marker_body(std::size_t i) const {
     const MjcfBody& body = world_.bodies[i];
     const auto is_inside = [i](const MjcfBody& other) { return other.parent == i; };
     return body.joints.empty() && body.geoms.empty() && !(body.mass > 0) &&
@@ -130,16 +130,17 @@ class ChainFinder {
     if (world_.composite && body.node == world_.composite) return true;
     const Vector3d joint =
         body.pose.inverse() * (world_.bodies[along.front()].pose * begin_of(along.front()));
-    const Vector3d next = along.size() > 1 ? place_in(along[1], along[0]) : joint;
+    const Vector3d next = along.size() > 1 ? segment_start_in(along[1], along[0]) : joint;
     const double h = along.size() > 1 ? (next - begin_of(along[0])).norm() : joint.norm();
-    return are_alike(joint.norm(), h) && std::ranges::any_of(body.geoms, [&](const MjcfGeom& geom) {
+    return nearly_equal(joint.norm(), h) &&
+           std::ranges::any_of(body.geoms, [&](const MjcfGeom& geom) {
              return std::min((geom.end(1) - joint).norm(), (geom.end(-1) - joint).norm()) <=
                     0.1 * h;
            });
   }
 
   /// Returns the start of a body's segment, in another body [m].
-  [[nodiscard]] Vector3d place_in(std::size_t body, std::size_t other) const {
+  [[nodiscard]] Vector3d segment_start_in(std::size_t body, std::size_t other) const {
     return world_.bodies[other].pose.inverse() * (world_.bodies[body].pose * begin_of(body));
   }
 
@@ -148,7 +149,8 @@ class ChainFinder {
     segment.body = bodies[i];
     segment.begin = begin_of(bodies[i]);
     segment.at = chain_.length;
-    segment.end = i + 1 < bodies.size() ? place_in(bodies[i + 1], bodies[i]) : last_end(segment);
+    segment.end = i + 1 < bodies.size() ? segment_start_in(bodies[i + 1], bodies[i])
+                                        : end_of_last_segment(segment);
     constexpr double shortest = 1e-9;
     if (!(segment.length() > shortest)) {
       fail(segment, "has no length: the next joint is at the same position (allowed: apart)");
@@ -158,7 +160,7 @@ class ChainFinder {
   }
 
   /// Returns the end of the last segment: the end of a geom that is farthest from the last joint.
-  [[nodiscard]] Vector3d last_end(const MjcfSegment& segment) const {
+  [[nodiscard]] Vector3d end_of_last_segment(const MjcfSegment& segment) const {
     Vector3d farthest = segment.begin;
     for (const MjcfGeom& geom : body_of(segment).geoms) {
       for (const double sign : {-1.0, 1.0}) {
@@ -177,7 +179,7 @@ class ChainFinder {
   void set_lengths() {
     const double h = chain_.segments.front().length();
     for (const MjcfSegment& segment : chain_.segments) {
-      if (are_alike(segment.length(), h)) continue;
+      if (nearly_equal(segment.length(), h)) continue;
       refuse(segment, fmt::format("is {:.6g} m long, and the first segment {:.6g} m (allowed: "
                                   "segments of one length)",
                                   segment.length(), h));
@@ -191,15 +193,17 @@ class ChainFinder {
       const Vector3d from_begin = body.centre - segment.begin;
       const double along = from_begin.dot(segment.direction());
       const double across = (from_begin - along * segment.direction()).norm();
-      if (body.mass > 0 && across > on_axis * segment.length()) {
+      if (body.mass > 0 && across > axis_tolerance * segment.length()) {
         refuse(segment, fmt::format("has its mass {:.4g} m off its axis (allowed: on it)", across));
       }
-      const double off = along / segment.length() - 0.5;
-      if (body.mass > 0 && std::abs(off) > off_middle_) off_middle_ = std::abs(off);
+      const double offset = along / segment.length() - 0.5;
+      if (body.mass > 0 && std::abs(offset) > largest_centre_offset_)
+        largest_centre_offset_ = std::abs(offset);
     }
-    if (off_middle_ > 1e-2) {
-      chain_.notes.push_back(fmt::format(
-          "mass of segments made uniform: centres move up to {:.2g} segment lengths", off_middle_));
+    if (largest_centre_offset_ > 1e-2) {
+      chain_.notes.push_back(
+          fmt::format("mass of segments made uniform: centres move up to {:.2g} segment lengths",
+                      largest_centre_offset_));
     }
   }
 
@@ -216,7 +220,7 @@ class ChainFinder {
     Vector3d before = Vector3d::Zero();
     for (const MjcfSegment& segment : chain_.segments) {
       const Vector3d t = body_of(segment).pose.linear() * segment.direction();
-      if (before.norm() > 0 && before.cross(t).norm() > straight) chain_.is_curved = true;
+      if (before.norm() > 0 && before.cross(t).norm() > collinear_angle) chain_.is_curved = true;
       if (before.norm() > 0 && before.dot(t) < 0) {
         refuse(segment,
                "is rotated by more than a right angle from the one before (allowed: less)");
@@ -244,7 +248,7 @@ class ChainFinder {
   const MjcfWorld& world_;
   MjcfChain chain_;
   // Largest distance of a centre of mass from the middle of its segment, in segments.
-  double off_middle_ = 0;
+  double largest_centre_offset_ = 0;
   std::vector<MjcfSpring> springs_;  // between segments, in the order of the chain
 };
 
@@ -281,7 +285,7 @@ void ChainFinder::set_joints() {
 
 void ChainFinder::require_axis(const MjcfSegment& segment, const MjcfSpring& spring) const {
   const Vector3d& first = springs_.front().hinge;
-  if (first.cross(spring.hinge).norm() <= straight &&
+  if (first.cross(spring.hinge).norm() <= collinear_angle &&
       (first.norm() > 0) == (spring.hinge.norm() > 0)) {
     return;
   }
@@ -310,11 +314,12 @@ void ChainFinder::set_sections() {
   for (std::size_t i = 0; i < halves; ++i) {
     const double from = static_cast<double>(i) * half;
     MjcfSection next = section(from, i + 1 == halves ? chain_.length : from + half);
-    const bool goes_on = !sections.empty() &&
-                         are_alike(sections.back().bending_stiffness, next.bending_stiffness) &&
-                         are_alike(sections.back().torsional_stiffness, next.torsional_stiffness) &&
-                         are_alike(sections.back().mass_per_length, next.mass_per_length);
-    if (goes_on) {
+    const bool has_next_section =
+        !sections.empty() &&
+        nearly_equal(sections.back().bending_stiffness, next.bending_stiffness) &&
+        nearly_equal(sections.back().torsional_stiffness, next.torsional_stiffness) &&
+        nearly_equal(sections.back().mass_per_length, next.mass_per_length);
+    if (has_next_section) {
       sections.back().to = next.to;
     } else {
       sections.push_back(next);

@@ -57,7 +57,7 @@ struct MjcfChain {
 [[nodiscard]] MjcfChain find_mjcf_chain(const MjcfAttributes& attributes, const MjcfWorld& world);
 
 /// A gripper of a cable.
-struct MjcfHold {
+struct MjcfGripper {
   double at = 0;                                       ///< arc length [m]
   Eigen::Vector3d position = Eigen::Vector3d::Zero();  ///< [m]
   std::optional<Eigen::Vector3d> direction;            ///< unit vector of a clamp
@@ -70,16 +70,17 @@ struct MjcfHold {
 /// constraints weld and connect to fixed bodies.
 /// @param constrained  whether constraints count;  @param notes  receives the assumptions
 /// @throws InputError that names file, line, element and attribute of what no gripper can represent
-[[nodiscard]] std::vector<MjcfHold> find_mjcf_holds(const MjcfAttributes& attributes,
-                                                    const MjcfWorld& world, const MjcfChain& chain,
-                                                    bool constrained,
-                                                    std::vector<std::string>& notes);
+[[nodiscard]] std::vector<MjcfGripper> find_mjcf_grippers(const MjcfAttributes& attributes,
+                                                          const MjcfWorld& world,
+                                                          const MjcfChain& chain, bool constrained,
+                                                          std::vector<std::string>& notes);
 
 /// Returns the geoms of fixed bodies that collide with a cable, as tables [[obstacle]] of a scene.
 /// @param notes  receives the neglected ones
 /// @throws InputError that names file, line and element of a geom that no obstacle can represent
 [[nodiscard]] std::string mjcf_obstacles(const MjcfAttributes& attributes, const MjcfWorld& world,
-                                         const MjcfChain& chain, const std::vector<MjcfHold>& holds,
+                                         const MjcfChain& chain,
+                                         const std::vector<MjcfGripper>& holds,
                                          std::vector<std::string>& notes);
 
 }  // namespace dlo::compare

@@ -85,12 +85,12 @@ Quaterniond next_frame(const Quaterniond& before, const Vector3d& edge) {
 }
 
 /// Elements of a composite that apply to all its bodies.
-struct Parts {
+struct SharedElements {
   pugi::xml_node geom, joint, plugin;
 };
 
-Parts parts_of(const MjcfNode& node) {
-  Parts parts;
+SharedElements shared_elements(const MjcfNode& node) {
+  SharedElements parts;
   for (const pugi::xml_node& child : node.element.children()) {
     const std::string_view name = child.name();
     if (child.type() != pugi::node_element || name == "skin" || name == "site") continue;
@@ -129,7 +129,7 @@ void add_mjcf_composite(const MjcfNode& node, const MjcfPose& at, std::size_t pa
   const std::vector<Vector3d> points =
       node.element.attribute("vertex") ? given_vertices(node) : curve_vertices(node);
   const Vector3d offset = node.vector("offset").value_or(Vector3d::Zero());
-  const Parts parts = parts_of(node);
+  const SharedElements parts = shared_elements(node);
   const std::string prefix = node.element.attribute("prefix").value();
   const std::size_t bodies = points.size() - 1;
   Quaterniond frame = Quaterniond::Identity();

@@ -60,16 +60,16 @@ Vector3d read_size(const MjcfNode& node, Type type, std::size_t given) {
 
 /// Sets pose and half-length from two ends.
 void span(const MjcfNode& node, const Vector3d& from, const Vector3d& to, MjcfGeom& geom) {
-  const Vector3d way = to - from;
+  const Vector3d axis = to - from;
   constexpr double shortest = 1e-12;
-  if (!(way.norm() > shortest)) {
+  if (!(axis.norm() > shortest)) {
     node.fail("fromto", "has no length (allowed: two points that are apart)");
   }
   geom.pose.linear() =
-      Eigen::Quaterniond::FromTwoVectors(Vector3d::UnitZ(), way).toRotationMatrix();
+      Eigen::Quaterniond::FromTwoVectors(Vector3d::UnitZ(), axis).toRotationMatrix();
   geom.pose.translation() = (from + to) / 2;
   // A box along z has its first two sizes perpendicular to z, as in MuJoCo.
-  geom.size[geom.is_round() ? 1 : 2] = way.norm() / 2;
+  geom.size[geom.is_round() ? 1 : 2] = axis.norm() / 2;
 }
 
 void read_mass(const MjcfNode& node, MjcfGeom& geom) {
@@ -83,7 +83,7 @@ void read_mass(const MjcfNode& node, MjcfGeom& geom) {
   geom.mass = mass.value_or(density * mjcf_volume(geom));
 }
 
-int bits_of(const MjcfNode& node, const char* attribute) {
+int collision_bits(const MjcfNode& node, const char* attribute) {
   const std::optional<std::string> given = node.text(attribute);
   if (!given) return 1;
   const std::optional<int> bits = as_number<int>(*given);
@@ -92,8 +92,8 @@ int bits_of(const MjcfNode& node, const char* attribute) {
 }
 
 void read_contact(const MjcfNode& node, MjcfGeom& geom) {
-  geom.contype = bits_of(node, "contype");
-  geom.conaffinity = bits_of(node, "conaffinity");
+  geom.contype = collision_bits(node, "contype");
+  geom.conaffinity = collision_bits(node, "conaffinity");
   const auto friction = node.numbers("friction", 1, 3);
   if (friction) geom.friction = friction->front();
   if (!(geom.friction >= 0)) node.fail("friction", "(allowed: 0 or more)");

@@ -13,18 +13,18 @@ namespace {
 using Eigen::Vector3d;
 
 /// Body of a constraint and the point of attachment.
-struct Attached {
+struct AttachmentPoint {
   std::size_t body = 0;
   MjcfPose frame = MjcfPose::Identity();  ///< frame that the constraint holds, in the body's frame
 };
 
 /// Finds the grippers of a chain.
-class HoldFinder {
+class GripperFinder {
  public:
-  HoldFinder(const MjcfAttributes& attributes, const MjcfWorld& world, const MjcfChain& chain)
+  GripperFinder(const MjcfAttributes& attributes, const MjcfWorld& world, const MjcfChain& chain)
       : attributes_(attributes), xml_(attributes.xml()), world_(world), chain_(chain) {}
 
-  [[nodiscard]] std::vector<MjcfHold> find(bool constrained, std::vector<std::string>& notes) {
+  [[nodiscard]] std::vector<MjcfGripper> find(bool constrained, std::vector<std::string>& notes) {
     add_first_body(notes);
     bool is_soft = false;
     for (const auto& constraint : xml_.root().select_nodes("equality/*")) {
@@ -41,8 +41,8 @@ class HoldFinder {
                 "weld and connect in <equality>)");
     }
     // Clamps in their reference poses do not twist the cable.
-    for (MjcfHold& hold : holds_) {
-      if (!is_turned_) hold.d1.reset();
+    for (MjcfGripper& hold : holds_) {
+      if (!is_clamp_rotated_) hold.d1.reset();
     }
     return std::move(holds_);
   }
@@ -60,7 +60,7 @@ class HoldFinder {
   void add_first_body(std::vector<std::string>& notes) {
     const MjcfSegment& first = chain_.segments.front();
     const MjcfBody& body = body_of(0);
-    MjcfHold hold;
+    MjcfGripper hold;
     hold.position = body.pose * first.begin;
     if (body.joints.empty()) {
       hold.direction = tangent(0);
@@ -92,8 +92,8 @@ class HoldFinder {
     constraint.require_known();
     if (constraint.choice("active", {"true", "false"}) == 1) return false;
     const bool by_sites = !constraint.element.attribute("site1").empty();
-    Attached first = by_sites ? site(constraint, "site1") : body(constraint, "body1");
-    Attached second = by_sites ? site(constraint, "site2") : body(constraint, "body2");
+    AttachmentPoint first = by_sites ? site(constraint, "site1") : body(constraint, "body1");
+    AttachmentPoint second = by_sites ? site(constraint, "site2") : body(constraint, "body2");
     if (kind == "weld") {
       weld(constraint, first, second, by_sites);
     } else {
@@ -102,7 +102,7 @@ class HoldFinder {
     return true;
   }
 
-  [[nodiscard]] Attached body(const MjcfNode& constraint, const char* attribute) const {
+  [[nodiscard]] AttachmentPoint body(const MjcfNode& constraint, const char* attribute) const {
     const std::string_view name = constraint.element.attribute(attribute).value();
     if (name.empty() && attribute == std::string_view("body2")) return {};
     if (name == "world") return {};
@@ -112,7 +112,7 @@ class HoldFinder {
     constraint.fail(attribute, name.empty() ? "missing (allowed: a body's name)" : "no such body");
   }
 
-  [[nodiscard]] Attached site(const MjcfNode& constraint, const char* attribute) const {
+  [[nodiscard]] AttachmentPoint site(const MjcfNode& constraint, const char* attribute) const {
     const std::string_view name = constraint.element.attribute(attribute).value();
     for (const MjcfSite& site : world_.sites) {
       if (!name.empty() && site.name == name) return {site.body, site.pose};
@@ -121,8 +121,8 @@ class HoldFinder {
   }
 
   /// Returns the segment that a constraint holds; the other body must not move.
-  [[nodiscard]] std::size_t held_segment(const MjcfNode& constraint, Attached& first,
-                                         Attached& second) const {
+  [[nodiscard]] std::size_t held_segment(const MjcfNode& constraint, AttachmentPoint& first,
+                                         AttachmentPoint& second) const {
     const auto a = chain_.segment_of(first.body);
     const auto b = chain_.segment_of(second.body);
     if (a.has_value() == b.has_value()) {
@@ -134,7 +134,8 @@ class HoldFinder {
     return a ? *a : *b;
   }
 
-  void weld(const MjcfNode& constraint, Attached first, Attached second, bool by_sites) {
+  void weld(const MjcfNode& constraint, AttachmentPoint first, AttachmentPoint second,
+            bool by_sites) {
     const bool swapped = !chain_.segment_of(first.body);
     const std::size_t k = held_segment(constraint, first, second);
     const MjcfSegment& segment = chain_.segments[k];
@@ -145,24 +146,25 @@ class HoldFinder {
       pose = world_.bodies[second.body].pose * second.frame * first.frame.inverse();
     } else if (moved) {
       // Pose of the second body in the frame of the first one.
-      const MjcfPose way = pose_of(*relative);
+      const MjcfPose relative_pose = pose_of(*relative);
       const MjcfPose other = world_.bodies[second.body].pose;
-      pose = swapped ? other * way : other * way.inverse();
+      pose = swapped ? other * relative_pose : other * relative_pose.inverse();
     }
     const bool last = k + 1 == chain_.segments.size();
     const double share = k == 0 ? 0 : last ? 1 : 0.5;
-    MjcfHold hold;
+    MjcfGripper hold;
     hold.at = last ? chain_.length : segment.at + share * segment.length();
     hold.position = pose * (segment.begin + share * (segment.end - segment.begin));
     hold.direction = pose.linear() * segment.direction();
     // The rod's d1 in the reference pose rotates with the body.
     hold.d1 = pose.linear() * body_of(k).pose.linear().transpose() * reference_d1(k);
-    is_turned_ = is_turned_ || moved;
+    is_clamp_rotated_ = is_clamp_rotated_ || moved;
     hold.words = fmt::format("<weld> holds {}", quoted_piece(body_of(k).name));
-    add_once(constraint, std::move(hold));
+    add_gripper(constraint, std::move(hold));
   }
 
-  void connect(const MjcfNode& constraint, Attached first, Attached second, bool by_sites) {
+  void connect(const MjcfNode& constraint, AttachmentPoint first, AttachmentPoint second,
+               bool by_sites) {
     const bool swapped = !chain_.segment_of(first.body);
     const Vector3d anchor =
         by_sites ? Vector3d::Zero() : constraint.vector("anchor").value_or(Vector3d::Zero());
@@ -171,7 +173,7 @@ class HoldFinder {
     }
     const std::size_t k = held_segment(constraint, first, second);
     const MjcfSegment& segment = chain_.segments[k];
-    MjcfHold hold;
+    MjcfGripper hold;
     Vector3d own = anchor;
     if (by_sites) {
       own = first.frame.translation();
@@ -184,8 +186,8 @@ class HoldFinder {
     }
     const double along = (own - segment.begin).dot(segment.direction());
     const double across = (own - segment.begin - along * segment.direction()).norm();
-    constexpr double on_axis = 1e-3;
-    const double slack = on_axis * segment.length();
+    constexpr double axis_tolerance = 1e-3;
+    const double slack = axis_tolerance * segment.length();
     if (across > slack || along < -slack || along > segment.length() + slack) {
       constraint.fail(
           fmt::format("holds {} at a point off its segment: {:.4g} m along it, {:.4g} m away "
@@ -196,7 +198,7 @@ class HoldFinder {
     if (hold.at > chain_.length - slack) hold.at = chain_.length;
     if (hold.at < slack) hold.at = 0;
     hold.words = fmt::format("<connect> holds {}", quoted_piece(body_of(k).name));
-    add_once(constraint, std::move(hold));
+    add_gripper(constraint, std::move(hold));
   }
 
   static bool has_rotation(const std::vector<double>& relpose) {
@@ -219,8 +221,8 @@ class HoldFinder {
     return d1;
   }
 
-  void add_once(const MjcfNode& constraint, MjcfHold hold) {
-    for (const MjcfHold& other : holds_) {
+  void add_gripper(const MjcfNode& constraint, MjcfGripper hold) {
+    for (const MjcfGripper& other : holds_) {
       if (std::abs(other.at - hold.at) < 1e-9 * chain_.length) {
         constraint.fail(
             fmt::format("constrains the cable where it is already constrained: {} (allowed: "
@@ -235,16 +237,16 @@ class HoldFinder {
   const XmlFile& xml_;
   const MjcfWorld& world_;
   const MjcfChain& chain_;
-  std::vector<MjcfHold> holds_;
-  bool is_turned_ = false;  // whether a clamp is rotated from its reference pose
+  std::vector<MjcfGripper> holds_;
+  bool is_clamp_rotated_ = false;  // whether a clamp is rotated from its reference pose
 };
 
 }  // namespace
 
-std::vector<MjcfHold> find_mjcf_holds(const MjcfAttributes& attributes, const MjcfWorld& world,
-                                      const MjcfChain& chain, bool constrained,
-                                      std::vector<std::string>& notes) {
-  return HoldFinder(attributes, world, chain).find(constrained, notes);
+std::vector<MjcfGripper> find_mjcf_grippers(const MjcfAttributes& attributes,
+                                            const MjcfWorld& world, const MjcfChain& chain,
+                                            bool constrained, std::vector<std::string>& notes) {
+  return GripperFinder(attributes, world, chain).find(constrained, notes);
 }
 
 }  // namespace dlo::compare

@@ -14,7 +14,8 @@ using Eigen::Vector3d;
 using Type = MjcfGeom::Type;
 
 /// Returns the names of bodies whose contact with the cable is disabled by <contact><exclude>.
-std::set<std::string> excluded(const XmlFile& xml, const MjcfWorld& world, const MjcfChain& chain) {
+std::set<std::string> excluded_bodies(const XmlFile& xml, const MjcfWorld& world,
+                                      const MjcfChain& chain) {
   std::set<std::string> names;
   const auto is_cable = [&](const std::string& name) {
     return std::ranges::any_of(chain.segments, [&](const MjcfSegment& segment) {
@@ -34,7 +35,7 @@ std::set<std::string> excluded(const XmlFile& xml, const MjcfWorld& world, const
 }
 
 /// Returns the radius of a sphere that contains the geom [m]; 0 for a plane.
-double reach_of(const MjcfGeom& geom) {
+double bounding_radius(const MjcfGeom& geom) {
   return geom.type == Type::capsule ? geom.size.sum() : geom.size.norm();
 }
 
@@ -63,24 +64,24 @@ std::string shape_text(const MjcfGeom& geom, const MjcfPose& pose) {
 }  // namespace
 
 std::string mjcf_obstacles(const MjcfAttributes& attributes, const MjcfWorld& world,
-                           const MjcfChain& chain, const std::vector<MjcfHold>& holds,
+                           const MjcfChain& chain, const std::vector<MjcfGripper>& holds,
                            std::vector<std::string>& notes) {
   const XmlFile& xml = attributes.xml();
-  const std::set<std::string> apart = excluded(xml, world, chain);
+  const std::set<std::string> excluded_names = excluded_bodies(xml, world, chain);
   const MjcfBody& last = world.bodies[chain.segments.back().body];
   std::string text;
   int neglected = 0;
   for (const MjcfBody& body : world.bodies) {
-    if (body.moves || apart.contains(body.name)) continue;
+    if (body.moves || excluded_names.contains(body.name)) continue;
     if (chain.segment_of(static_cast<std::size_t>(&body - world.bodies.data()))) continue;
     for (const MjcfGeom& geom : body.geoms) {
       const bool collides =
           std::ranges::any_of(last.geoms, [&](const MjcfGeom& own) { return geom.collides(own); });
       if (!collides) continue;
       const MjcfPose pose = body.pose * geom.pose;
-      const bool holds_it = std::ranges::any_of(holds, [&](const MjcfHold& hold) {
+      const bool holds_it = std::ranges::any_of(holds, [&](const MjcfGripper& hold) {
         return geom.type != Type::plane &&
-               (hold.position - pose.translation()).norm() < reach_of(geom) + chain.diameter;
+               (hold.position - pose.translation()).norm() < bounding_radius(geom) + chain.diameter;
       });
       if (holds_it) {
         ++neglected;

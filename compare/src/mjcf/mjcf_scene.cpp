@@ -63,16 +63,16 @@ std::string rest_points(const MjcfWorld& world, const MjcfChain& chain) {
 /// component perpendicular to it, a rod does not.
 void require_in_plane(const XmlFile& xml, const MjcfWorld& world, const MjcfChain& chain,
                       const Vector3d& gravity) {
-  constexpr double aligned = 1e-6;
-  if (!(std::abs(chain.hinge.dot(gravity)) > aligned * gravity.norm())) return;
+  constexpr double axis_alignment_tolerance = 1e-6;
+  if (!(std::abs(chain.hinge.dot(gravity)) > axis_alignment_tolerance * gravity.norm())) return;
   xml.fail(world.bodies[chain.segments[1].body].joints.front().node, "axis",
            "lets the cable bend only in a plane that does not contain gravity, so the hinges carry "
            "weight (allowed: gravity at a right angle to the hinges; or two hinges, or a ball)");
 }
 
-std::string grippers_text(const std::vector<MjcfHold>& holds) {
+std::string grippers_text(const std::vector<MjcfGripper>& holds) {
   std::string text;
-  for (const MjcfHold& hold : holds) {
+  for (const MjcfGripper& hold : holds) {
     append(text, "\n[[gripper]]  # {}\nat = {:.17g}\nposition = {}\nhold = \"{}\"\n",
            printable_piece(hold.words), hold.at, toml_vector(hold.position),
            hold.direction ? "clamp" : "pin");
@@ -114,8 +114,8 @@ std::string sections_text(const MjcfChain& chain) {
 }
 
 /// Returns the chain with the assumptions that were made.
-ModelChain told(const MjcfWorld& world, const MjcfChain& chain,
-                const std::vector<std::string>& notes) {
+ModelChain make_model_chain(const MjcfWorld& world, const MjcfChain& chain,
+                            const std::vector<std::string>& notes) {
   ModelChain result;
   result.words = "MJCF, " + chain.words;
   result.segments = static_cast<Eigen::Index>(chain.segments.size());
@@ -139,8 +139,8 @@ MjcfScene mjcf_scene(std::string_view text, const std::string& file) {
   const MjcfChain chain = find_mjcf_chain(attributes, world);
   require_in_plane(xml, world, chain, options.gravity);
   std::vector<std::string> notes = world.notes;
-  const std::vector<MjcfHold> holds =
-      find_mjcf_holds(attributes, world, chain, options.equality, notes);
+  const std::vector<MjcfGripper> holds =
+      find_mjcf_grippers(attributes, world, chain, options.equality, notes);
   const std::string name =
       xml.root().attribute("model").as_string(std::filesystem::path(file).stem().c_str());
   std::string scene = fmt::format("name = {}\ngravity = {}\n", toml_string(valid_utf8(name)),
@@ -148,7 +148,7 @@ MjcfScene mjcf_scene(std::string_view text, const std::string& file) {
   scene += rod_text(world, chain) + sections_text(chain) + grippers_text(holds);
   if (options.contact) scene += mjcf_obstacles(attributes, world, chain, holds, notes);
   refusals.throw_if_any();
-  return {std::move(scene), told(world, chain, notes)};
+  return {std::move(scene), make_model_chain(world, chain, notes)};
 }
 
 }  // namespace dlo::compare

@@ -14,7 +14,7 @@ using Eigen::Vector3d;
 
 /// Largest cosine of the angle between axes that count as perpendicular, and largest difference of
 /// the cosine from 1 for axes that count as parallel [-].
-constexpr double aligned = 1e-6;
+constexpr double axis_alignment_tolerance = 1e-6;
 
 MjcfSpring spring_of_ball(const XmlFile& xml, const MjcfBody& body, double h) {
   if (body.joints.size() > 1) {
@@ -48,20 +48,20 @@ MjcfSpring spring_of_hinges(const XmlFile& xml, const MjcfBody& body, const Vect
     }
     const double EI = joint.stiffness * h;
     const double along = std::abs(joint.axis.dot(direction));
-    if (along > 1 - aligned) {
+    if (along > 1 - axis_alignment_tolerance) {
       result.twisting += EI;
       continue;
     }
-    if (along > aligned) {
+    if (along > axis_alignment_tolerance) {
       xml.fail(joint.node, "axis", "is oblique (allowed: across the segment, or along it)");
     }
     const auto is_across = [&](const Vector3d& other) {
-      return std::abs(other.dot(joint.axis)) <= aligned;
+      return std::abs(other.dot(joint.axis)) <= axis_alignment_tolerance;
     };
     if (!std::all_of(axes.begin(), axes.end(), is_across)) {
       xml.fail(joint.node, "axis", "is not at a right angle to the hinge's before");
     }
-    if (!axes.empty() && !are_alike(EI, result.bending)) {
+    if (!axes.empty() && !nearly_equal(EI, result.bending)) {
       xml.fail(
           joint.node, "stiffness",
           fmt::format("differs from {:.6g}, the stiffness of the other hinge (allowed: the same)",
@@ -79,9 +79,9 @@ MjcfSpring spring_of_hinges(const XmlFile& xml, const MjcfBody& body, const Vect
 
 }  // namespace
 
-bool are_alike(double a, double b) {
-  constexpr double alike = 1e-3;
-  return std::abs(a - b) <= alike * std::max(std::abs(a), std::abs(b));
+bool nearly_equal(double a, double b) {
+  constexpr double tolerance = 1e-3;
+  return std::abs(a - b) <= tolerance * std::max(std::abs(a), std::abs(b));
 }
 
 MjcfSpring mjcf_spring(const XmlFile& xml, const MjcfBody& body, const Vector3d& direction,

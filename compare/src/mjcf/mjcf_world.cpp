@@ -37,13 +37,13 @@ class WorldReader {
 
  private:
   /// Surroundings of an element.
-  struct Around {
+  struct Surroundings {
     std::size_t body;
     MjcfPose at;  ///< pose of the surrounding frames, in the body
     std::string childclass;
   };
 
-  void read_children(const pugi::xml_node& parent, const Around& around) {
+  void read_children(const pugi::xml_node& parent, const Surroundings& around) {
     // Nested bodies are read after all other elements of a body.
     for (const auto read : {&WorldReader::read_part, &WorldReader::read_inner}) {
       for (const pugi::xml_node& element : parent.children()) {
@@ -54,7 +54,7 @@ class WorldReader {
     }
   }
 
-  void read_inner(const MjcfNode& node, const Around& around) {
+  void read_inner(const MjcfNode& node, const Surroundings& around) {
     const std::string_view name = node.element.name();
     if (name == "body") read_body(node, around);
     if (name == "frame") read_children(node.element, within(node, around));
@@ -63,13 +63,13 @@ class WorldReader {
     }
   }
 
-  [[nodiscard]] Around within(const MjcfNode& frame, const Around& around) const {
+  [[nodiscard]] Surroundings within(const MjcfNode& frame, const Surroundings& around) const {
     frame.require_known();
     return {around.body, around.at * frame.pose(),
             attributes_.known_class(frame.element, "childclass", around.childclass)};
   }
 
-  void read_part(const MjcfNode& node, const Around& around) {
+  void read_part(const MjcfNode& node, const Surroundings& around) {
     const std::string_view name = node.element.name();
     MjcfBody& body = world_.bodies[around.body];
     if (name == "body" || name == "frame" || name == "composite" || mjcf_without_effect(name)) {
@@ -92,7 +92,7 @@ class WorldReader {
     }
   }
 
-  void read_body(const MjcfNode& node, const Around& around) {
+  void read_body(const MjcfNode& node, const Surroundings& around) {
     node.require_known();
     MjcfBody body;
     body.name = node.element.attribute("name").value();
@@ -106,7 +106,7 @@ class WorldReader {
         attributes_.known_class(node.element, "childclass", around.childclass);
     // The body's other elements are read first, then its mass is known, then nested bodies are
     // read.
-    const Around inside{index, MjcfPose::Identity(), childclass};
+    const Surroundings inside{index, MjcfPose::Identity(), childclass};
     read_children(node.element, inside);
     set_mjcf_mass(attributes_, node.element.child("inertial"), world_.bodies[index]);
   }

@@ -18,7 +18,7 @@ namespace dlo::compare {
 namespace {
 
 /// Surface swept by a segment of the polyline, or by a part of it: bilinear between its corners.
-struct Patch {
+struct SweptPatch {
   Eigen::Vector3d begin_before, end_before, begin_after, end_after;
 
   [[nodiscard]] Eigen::Vector3d centre() const {
@@ -27,30 +27,30 @@ struct Patch {
   [[nodiscard]] double length() const {
     return std::max((end_before - begin_before).norm(), (end_after - begin_after).norm());
   }
-  [[nodiscard]] double way() const {
+  [[nodiscard]] double displacement() const {
     return std::max((begin_after - begin_before).norm(), (end_after - end_before).norm());
   }
 };
 
 /// Whether a point of a patch is deeper in a body than `depth`. Clearances of two points differ by
 /// no more than the distance of the points, so patches far from the body are skipped.
-bool goes_through(const obstacle::Body& body, const Patch& patch, double depth, int halvings) {
+bool penetrates(const obstacle::Body& body, const SweptPatch& patch, double depth, int halvings) {
   const double clearance = body.clearance(patch.centre());
   if (clearance < -depth) return true;
   const double length = patch.length();
-  const double way = patch.way();
-  if (halvings == 0 || clearance - (length + way) / 2 > -depth) return false;
-  Patch first = patch;
-  Patch second = patch;
-  if (length > way) {
+  const double displacement = patch.displacement();
+  if (halvings == 0 || clearance - (length + displacement) / 2 > -depth) return false;
+  SweptPatch first = patch;
+  SweptPatch second = patch;
+  if (length > displacement) {
     first.end_before = second.begin_before = (patch.begin_before + patch.end_before) / 2;
     first.end_after = second.begin_after = (patch.begin_after + patch.end_after) / 2;
   } else {
     first.begin_after = second.begin_before = (patch.begin_before + patch.begin_after) / 2;
     first.end_after = second.end_before = (patch.end_before + patch.end_after) / 2;
   }
-  return goes_through(body, first, depth, halvings - 1) ||
-         goes_through(body, second, depth, halvings - 1);
+  return penetrates(body, first, depth, halvings - 1) ||
+         penetrates(body, second, depth, halvings - 1);
 }
 
 using energy_model::Equilibrium;
@@ -63,14 +63,14 @@ constexpr int most_snaps = 4;
 /// Number of smallest steps beyond the last shape within which an extrapolated quantity must vanish
 /// for a branch to have ended. It is larger than 1 because the smallest eigenvalue has a vertical
 /// tangent at a fold, so that a straight line through two values reaches zero late.
-constexpr double steps_to_end = 4;
+constexpr double extrapolation_steps = 4;
 
 /// Energy differences that rounding and the solver's tolerance may cause, divided by EI/l plus the
 /// largest work of gravity and loads [-].
 constexpr double energy_noise = 1e-8;
 
 /// Checks that no gripper is in an obstacle. @throws InputError if one is
-void require_clear(const Scene& now) {
+void require_grippers_clear(const Scene& now) {
   for (std::size_t g = 0; g < now.grippers.size(); ++g) {
     for (std::size_t i = 0; i < now.obstacles.size(); ++i) {
       const double depth = -now.obstacles[i].body.clearance(now.grippers[g].position);
@@ -93,7 +93,7 @@ Eigen::Vector3d turn_between(const Eigen::Vector3d& from, const Eigen::Vector3d&
 /// Returns the decrease of the couples' potential between two shapes that is caused by the motion
 /// of its zero with a clamp or a chord [J]. Whole turns that couple_zero() does not count are
 /// counted here, since the tangent there rotates by less than half a turn in a step.
-double couples_of_moved_zero(const Moment& before, const Moment& after) {
+double potential_shift_of_couples(const SolvedInstant& before, const SolvedInstant& after) {
   if (!after.scene.has_couples()) return 0;
   const energy_model::Problem from = energy_problem(before.scene);
   const energy_model::Problem to = energy_problem(after.scene);
@@ -150,7 +150,7 @@ std::vector<double> rolls_between(const Scene& before, const Scene& after) {
     const Gripper& to = after.grippers[i];
     if (to.frame) rolls[i] = to.frame->roll - before.grippers[i].frame->roll;
   }
-  if (!after.holds_twist() || after.has_material_directors()) return rolls;
+  if (!after.prescribes_twist() || after.has_material_directors()) return rolls;
   const energy_model::Problem from = energy_problem(before);
   energy_model::Problem to = energy_problem(after);
   const auto carried = [&](std::size_t i) -> Eigen::Vector3d {
@@ -171,7 +171,7 @@ std::vector<double> rolls_between(const Scene& before, const Scene& after) {
   return rolls;
 }
 
-Work work_between(const Moment& before, const Moment& after, double step,
+Work work_between(const SolvedInstant& before, const SolvedInstant& after, double step,
                   const std::vector<std::size_t>& obstacles,
                   std::vector<Eigen::Vector3d>& changes) {
   Work work(step, changes);
@@ -196,7 +196,7 @@ Work work_between(const Moment& before, const Moment& after, double step,
 
 /// Whether the rod passed through an obstacle in a step: its points would be deep inside the
 /// obstacle on straight paths between both shapes.
-bool passes_through(const Moment& before, const Moment& after,
+bool passes_through(const SolvedInstant& before, const SolvedInstant& after,
                     const std::vector<std::size_t>& obstacles) {
   return std::any_of(obstacles.begin(), obstacles.end(), [&](std::size_t i) {
     const obstacle::Body& body = before.scene.obstacles[i].body;
@@ -213,13 +213,13 @@ bool passes_through(const Moment& before, const Moment& after,
     const Eigen::Vector3d moved = after.scene.obstacles[i].body.centre() - body.centre();
     const Eigen::Matrix3Xd from = before.rod.sample(s).points;
     const Eigen::Matrix3Xd to = after.rod.sample(s).points.colwise() - moved;
-    return sweeps_through(body, from, to, depth);
+    return sweeps_through_body(body, from, to, depth);
   });
 }
 
 /// Returns the extrapolated position at which a quantity with the values a and b is zero, measured
 /// from b in units of the distance from a to b; infinite if it does not decrease towards zero.
-double comes_to_zero(double a, double b) {
+double extrapolated_zero(double a, double b) {
   if (!(b >= 0 && a > b)) return std::numeric_limits<double>::infinity();
   return b / (a - b);
 }
@@ -231,17 +231,17 @@ double inner_radius(const obstacle::Body& body) {
   return body.radius() + body.upper().minCoeff();
 }
 
-bool sweeps_through(const obstacle::Body& body, const Eigen::Matrix3Xd& before,
-                    const Eigen::Matrix3Xd& after, double depth) {
+bool sweeps_through_body(const obstacle::Body& body, const Eigen::Matrix3Xd& before,
+                         const Eigen::Matrix3Xd& after, double depth) {
   constexpr int most_halvings = 24;
   for (Eigen::Index i = 0; i + 1 < before.cols(); ++i) {
-    const Patch patch{before.col(i), before.col(i + 1), after.col(i), after.col(i + 1)};
-    if (goes_through(body, patch, depth, most_halvings)) return true;
+    const SweptPatch patch{before.col(i), before.col(i + 1), after.col(i), after.col(i + 1)};
+    if (penetrates(body, patch, depth, most_halvings)) return true;
   }
   return false;
 }
 
-SceneEnergies energies_of(const Moment& moment) {
+SceneEnergies energies_of(const SolvedInstant& moment) {
   const Scene& now = moment.scene;
   const Equilibrium& rod = moment.rod;
   const Eigen::Vector3d zero = now.grippers.front().position;
@@ -257,17 +257,17 @@ SceneEnergies energies_of(const Moment& moment) {
   return energy;
 }
 
-bool shows_its_end(const BranchWitness& before, const BranchWitness& last, double rejected) {
-  const double way = last.at - before.at;
-  if (!(way > 0)) return false;
-  const double most = steps_to_end * rejected / way;
+bool branch_ends_before(const BranchSample& before, const BranchSample& last, double rejected) {
+  const double interval = last.at - before.at;
+  if (!(interval > 0)) return false;
+  const double most = extrapolation_steps * rejected / interval;
   const double a = before.smallest_eigenvalue;
   const double b = last.smallest_eigenvalue;
-  if (std::min(comes_to_zero(a, b), comes_to_zero(a * a, b * b)) <= most) return true;
+  if (std::min(extrapolated_zero(a, b), extrapolated_zero(a * a, b * b)) <= most) return true;
   if (before.contacts.size() != last.contacts.size()) return false;
   for (std::size_t i = 0; i < last.contacts.size(); ++i) {
     const double was = before.contacts[i].force.norm();
-    if (comes_to_zero(was, last.contacts[i].force.norm()) <= most) return true;
+    if (extrapolated_zero(was, last.contacts[i].force.norm()) <= most) return true;
   }
   return false;
 }
@@ -284,48 +284,49 @@ Branch::Branch(const Scene& scene, const FrameClock& clock,
   }
   // The rotation of a material's directors by a clamp about their tangent, and the energy stored in
   // a yielding obstacle, are not known.
-  balances_ = !yields && !(scene.has_material_directors() &&
-                           (scene.holds_twist() || !clock_.scene(scene, 0).planar()));
-  const double loads = scene.weight_between(0, scene.length).norm() + scene.total_of_loads();
+  has_energy_balance_ =
+      !yields && !(scene.has_material_directors() &&
+                   (scene.prescribes_twist() || !clock_.scene(scene, 0).planar()));
+  const double loads = scene.weight_between(0, scene.length).norm() + scene.total_load_magnitude();
   noise_ = energy_noise * (scene.bending_stiffness() / scene.length + loads * scene.length);
 }
 
 void Branch::begin() {
   Scene scene = clock_.scene(scene_, 0);
-  require_clear(scene);
+  require_grippers_clear(scene);
   Equilibrium rod = solver_.solve(frame_problem(scene, obstacles_));
   now_ = {std::move(scene), std::move(rod)};
-  witness(0);
+  record_sample(0);
 }
 
 Passage Branch::next() {
   ++frame_;
   Passage passage;
-  if (!stands()) {
-    go_to_frame(passage);
+  if (!is_stationary()) {
+    advance_to_frame(passage);
   } else {
-    passage.stands = true;
+    passage.is_stationary = true;
   }
-  if (!balances_) passage.released = std::numeric_limits<double>::quiet_NaN();
+  if (!has_energy_balance_) passage.released = std::numeric_limits<double>::quiet_NaN();
   return passage;
 }
 
-void Branch::go_to_frame(Passage& passage) {
-  if (seen_) {
-    for (BranchWitness& witness : *seen_) witness.at -= 1;
+void Branch::advance_to_frame(Passage& passage) {
+  if (last_samples_) {
+    for (BranchSample& record_sample : *last_samples_) record_sample.at -= 1;
   }
   double at = 0;
   double step = 1;
-  int kept_in_a_row = 0;
+  int accepted_steps = 0;
   int snaps = 0;
   for (int made = 0; at < 1; ++made) {
     step = std::min(step, 1 - at);
     if (made < most_branch_steps && step >= smallest_step) {
       if (try_follow(scene_at(at + step), at, step, passage)) {
         at += step;
-        if (++kept_in_a_row == 2) step *= 2;
+        if (++accepted_steps == 2) step *= 2;
       } else {
-        kept_in_a_row = 0;
+        accepted_steps = 0;
         passage.smaller = true;
         step /= 2;
       }
@@ -334,18 +335,18 @@ void Branch::go_to_frame(Passage& passage) {
     // The shape just beyond the end of the branch is the best start for the shape after the snap.
     const bool near = made < most_branch_steps && ++snaps <= most_snaps;
     const double rejected = near ? std::min(2 * step, 1 - at) : 1 - at;
-    at += leave(at, rejected, passage);
+    at += leave_branch(at, rejected, passage);
     const double bound = passage.released_bound;
     if (!energy_model::succeeded(now_.rod.status) || passage.released < -bound) return;
     step = 1 - at;
-    kept_in_a_row = 0;
+    accepted_steps = 0;
   }
 }
 
 /// Leaves the branch for the equilibrium that is found from its end: a small step away or, if none
 /// is found there, at the frame.
 /// @return the step [frames]
-double Branch::leave(double at, double rejected, Passage& passage) {
+double Branch::leave_branch(double at, double rejected, Passage& passage) {
   if (passage.kept) {
     passage.kept = false;
     passage.last_eigenvalue = now_.rod.smallest_eigenvalue;
@@ -353,9 +354,10 @@ double Branch::leave(double at, double rejected, Passage& passage) {
     passage.released = 0;
     passage.released_bound = 0;
   }
-  passage.ended = passage.ended && shows_its_end((*seen_)[0], (*seen_)[1], rejected);
+  passage.ended =
+      passage.ended && branch_ends_before((*last_samples_)[0], (*last_samples_)[1], rejected);
   double step = rejected;
-  Moment after{scene_at(at + step), {}};
+  SolvedInstant after{scene_at(at + step), {}};
   after.rod = solver_.follow(frame_problem(after.scene, obstacles_));
   if (!energy_model::succeeded(after.rod.status) && at + step < 1) {
     solver_.undo();
@@ -368,7 +370,7 @@ double Branch::leave(double at, double rejected, Passage& passage) {
     after.rod = solver_.solve(frame_problem(after.scene, obstacles_));
   }
   if (energy_model::succeeded(after.rod.status)) {
-    after.couples = now_.couples + couples_of_moved_zero(now_, after);
+    after.couples = now_.couples + potential_shift_of_couples(now_, after);
     const Work work = work_between(now_, after, step, obstacles_, changes_);
     const double grown = energies_of(after).total() - energies_of(now_).total();
     passage.work += work.done;
@@ -377,15 +379,15 @@ double Branch::leave(double at, double rejected, Passage& passage) {
   }
   now_ = std::move(after);
   // Witnesses of another branch say nothing about the end of the new one.
-  seen_.reset();
-  witness(at + step);
+  last_samples_.reset();
+  record_sample(at + step);
   // Neither do changes of forces across a jump.
   changes_.clear();
   return step;
 }
 
 /// Whether nothing has moved since the last frame, so that the rod rests too.
-bool Branch::stands() const {
+bool Branch::is_stationary() const {
   const Scene scene = clock_.scene(scene_, frame_);
   return scene.grippers == now_.scene.grippers && scene.obstacles == now_.scene.obstacles;
 }
@@ -393,7 +395,7 @@ bool Branch::stands() const {
 Scene Branch::scene_at(double share) const {
   Scene scene =
       share < 1 ? clock_.scene_before(scene_, frame_, share) : clock_.scene(scene_, frame_);
-  require_clear(scene);
+  require_grippers_clear(scene);
   return scene;
 }
 
@@ -401,12 +403,12 @@ Scene Branch::scene_at(double share) const {
 bool Branch::try_follow(Scene scene, double from, double step, Passage& passage) {
   std::optional<Equilibrium> rod = solver_.try_follow(frame_problem(scene, obstacles_));
   if (!rod) return false;
-  Moment after{std::move(scene), std::move(*rod)};
-  after.couples = now_.couples + couples_of_moved_zero(now_, after);
+  SolvedInstant after{std::move(scene), std::move(*rod)};
+  after.couples = now_.couples + potential_shift_of_couples(now_, after);
   std::vector<Eigen::Vector3d> changes = changes_;
   const Work work = work_between(now_, after, step, obstacles_, changes);
   const double released = work.done - (energies_of(after).total() - energies_of(now_).total());
-  const bool other_branch = balances_ && std::abs(released) > work.bound + noise_;
+  const bool other_branch = has_energy_balance_ && std::abs(released) > work.bound + noise_;
   if (other_branch || passes_through(now_, after, obstacles_)) {
     solver_.undo();
     return false;
@@ -418,16 +420,16 @@ bool Branch::try_follow(Scene scene, double from, double step, Passage& passage)
     passage.released_bound += work.bound + noise_;
   }
   now_ = std::move(after);
-  witness(from + step);
+  record_sample(from + step);
   return true;
 }
 
-void Branch::witness(double at) {
-  BranchWitness seen{at, now_.rod.smallest_eigenvalue, now_.rod.contacts};
-  if (!seen_) {
-    seen_ = {seen, seen};
+void Branch::record_sample(double at) {
+  BranchSample seen{at, now_.rod.smallest_eigenvalue, now_.rod.contacts};
+  if (!last_samples_) {
+    last_samples_ = {seen, seen};
   } else {
-    (*seen_)[0] = std::exchange((*seen_)[1], std::move(seen));
+    (*last_samples_)[0] = std::exchange((*last_samples_)[1], std::move(seen));
   }
 }
 

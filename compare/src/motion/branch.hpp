@@ -22,11 +22,11 @@ namespace dlo::compare {
 /// `depth`.
 /// @param before, after  its points at the begin and the end of the motion, 3 x M, M >= 2 [m]
 /// @param depth          > 0 [m]
-[[nodiscard]] bool sweeps_through(const obstacle::Body& body, const Eigen::Matrix3Xd& before,
-                                  const Eigen::Matrix3Xd& after, double depth);
+[[nodiscard]] bool sweeps_through_body(const obstacle::Body& body, const Eigen::Matrix3Xd& before,
+                                       const Eigen::Matrix3Xd& after, double depth);
 
 /// The scene at one time of the motion, and the energy model's solution.
-struct Moment {
+struct SolvedInstant {
   Scene scene;
   energy_model::Equilibrium rod;
   double couples = 0;  ///< offset of the zero of the couples' potential since the first
@@ -35,14 +35,14 @@ struct Moment {
 
 /// Returns energies with zeros that do not move with the grippers: those of gravity and forces are
 /// at the origin, that of couples is at energy_model::couple_zero() of the first frame.
-[[nodiscard]] SceneEnergies energies_of(const Moment& moment);
+[[nodiscard]] SceneEnergies energies_of(const SolvedInstant& moment);
 
 /// How the rod reached a frame from the one before.
 struct Passage {
   bool kept = true;  ///< it stayed on its branch: each shape is close to the one before, and the
                      ///< energy balances
-  bool smaller = false;  ///< whether steps smaller than a frame were made
-  bool stands = false;   ///< whether nothing moved
+  bool smaller = false;        ///< whether steps smaller than a frame were made
+  bool is_stationary = false;  ///< whether nothing moved
   /// If the branch was not kept: whether its end was observed, as loss of stability or as a
   /// vanishing contact force.
   bool ended = false;
@@ -51,12 +51,12 @@ struct Passage {
   double work = 0;  ///< work of grippers and obstacles on the rod [J]
   /// Work minus the increase of the energy, for a branch that was not kept only of its snaps, and
   /// the bound of its error by forces between those before and after each step [J]. NaN if
-  /// Branch::balances() is false.
+  /// Branch::has_energy_balance() is false.
   double released = 0, released_bound = 0;
 };
 
 /// Quantities of a shape that show whether its branch is about to end.
-struct BranchWitness {
+struct BranchSample {
   double at = 0;  ///< time [frames]
   /// Smallest eigenvalue of the second variation, divided by EI/l [-]; NaN if unknown.
   double smallest_eigenvalue = std::numeric_limits<double>::quiet_NaN();
@@ -69,8 +69,8 @@ struct BranchWitness {
 /// does.
 /// @param before, last  the last two shapes on the branch
 /// @param rejected  size of the step from the last one [frames]
-[[nodiscard]] bool shows_its_end(const BranchWitness& before, const BranchWitness& last,
-                                 double rejected);
+[[nodiscard]] bool branch_ends_before(const BranchSample& before, const BranchSample& last,
+                                      double rejected);
 
 /// The equilibrium shapes of a rod in the frames of a motion, each on the branch of the one before
 /// as long as the branch exists.
@@ -92,7 +92,7 @@ class Branch {
   [[nodiscard]] const std::vector<std::size_t>& obstacles() const { return obstacles_; }
   /// Whether work and energy are known. They are not with yielding obstacles, nor, for a rod with
   /// material directors, out of a plane or with held frames.
-  [[nodiscard]] bool balances() const { return balances_; }
+  [[nodiscard]] bool has_energy_balance() const { return has_energy_balance_; }
 
   /// Solves the first frame: the lowest shape that is found.
   /// @throws InputError, std::invalid_argument if the frame is invalid
@@ -101,26 +101,26 @@ class Branch {
   /// @throws InputError, std::invalid_argument if the frame is invalid
   [[nodiscard]] Passage next();
   /// Returns the last frame.
-  [[nodiscard]] const Moment& now() const { return now_; }
+  [[nodiscard]] const SolvedInstant& now() const { return now_; }
 
  private:
-  [[nodiscard]] bool stands() const;
+  [[nodiscard]] bool is_stationary() const;
   [[nodiscard]] Scene scene_at(double share) const;
-  void go_to_frame(Passage& passage);
-  double leave(double at, double rejected, Passage& passage);
+  void advance_to_frame(Passage& passage);
+  double leave_branch(double at, double rejected, Passage& passage);
   [[nodiscard]] bool try_follow(Scene scene, double from, double step, Passage& passage);
-  void witness(double at);
+  void record_sample(double at);
 
   const Scene& scene_;
   const FrameClock& clock_;
   std::vector<std::size_t> obstacles_;
   energy_model::EnergySolver solver_;
-  bool balances_ = true;
+  bool has_energy_balance_ = true;
   double noise_ = 0;
   std::size_t frame_ = 0;
-  Moment now_;
+  SolvedInstant now_;
   std::vector<Eigen::Vector3d> changes_;  // rates of change of the forces in the last step
-  std::optional<std::array<BranchWitness, 2>> seen_;  // the last two shapes
+  std::optional<std::array<BranchSample, 2>> last_samples_;  // the last two shapes
 };
 
 }  // namespace dlo::compare

@@ -44,7 +44,7 @@ void add_lag(const Track& track, double length, double step, DynamicTrack& resul
     follower.push_back(track.frames[i].force->points);
   }
   if (leader.empty()) return;
-  const Lag lag = lag_of(leader, follower, step);
+  const Lag lag = estimate_lag(leader, follower, step);
   result.force_lag = lag.time;
   result.force_error_without_lag = lag.rms / length;
 }
@@ -86,10 +86,10 @@ DynamicTrack dynamic_track(const Scene& scene, const Track& track, const TrackOp
   result.fewer_terms = std::max(1, result.terms * 2 / 3);
   const energy_model::Dynamics coarse = moving.run(times, result.fewer_terms).moved;
   if (moved.frames.size() < times.size()) {
-    result.stopped = {times[moved.frames.size()], run.why_stopped()};
+    result.stopped = {times[moved.frames.size()], run.stop_reason()};
   }
   if (moved.frames.empty()) {
-    throw ConvergenceError(fmt::format("{}: --dynamic: {}", scene.file, run.why_stopped()));
+    throw ConvergenceError(fmt::format("{}: --dynamic: {}", scene.file, run.stop_reason()));
   }
   result.steps = moved.steps;
   result.energy_error = moved.energy_error;
@@ -101,7 +101,7 @@ DynamicTrack dynamic_track(const Scene& scene, const Track& track, const TrackOp
   for (std::size_t i = 0; i < moved.frames.size(); ++i) {
     result.frames.push_back(frame_of(moved.frames[i], track.frames[i], track.arc_length));
     result.frames.back().obstacles =
-        forces_of_all(scene, moving.obstacles(), moved.frames[i].obstacles);
+        expand_obstacle_forces(scene, moving.obstacles(), moved.frames[i].obstacles);
   }
   const SceneEnergies& zero = track.frames.front().energy;
   const energy_model::EnergyBalance first = result.frames.front().energy;
@@ -113,10 +113,10 @@ DynamicTrack dynamic_track(const Scene& scene, const Track& track, const TrackOp
     result.term_difference = std::numeric_limits<double>::infinity();
   }
   for (std::size_t i = 0; i < std::min(moved.frames.size(), coarse.frames.size()); ++i) {
-    const Eigen::Matrix3Xd apart =
+    const Eigen::Matrix3Xd difference =
         coarse.frames[i].sample(track.arc_length).points - result.frames[i].points;
     result.term_difference =
-        std::max(result.term_difference, rms(track.arc_length, apart) / scene.length);
+        std::max(result.term_difference, rms(track.arc_length, difference) / scene.length);
   }
   add_errors(result.frames, result);
   add_lag(track, scene.length, 1 / options.rates.frames, result);

@@ -20,8 +20,8 @@ namespace dlo::compare {
 namespace {
 
 /// Returns the polygon's points on the energy model's shape, except those that grips hold.
-Eigen::Matrix3Xd start_on(const Discretisation& discretisation,
-                          const energy_model::Equilibrium& rod) {
+Eigen::Matrix3Xd points_on_shape(const Discretisation& discretisation,
+                                 const energy_model::Equilibrium& rod) {
   std::vector<double> s = discretisation.arc_length;
   for (double& at : s) at = std::clamp(at, 0.0, discretisation.length);
   Eigen::Matrix3Xd points = rod.sample(s).points;
@@ -40,7 +40,7 @@ double sum_of_squares(const Eigen::Matrix3Xd& a, const Eigen::Matrix3Xd& b) {
 ForceTrack::ForceTrack(const Scene& now, const energy_model::Equilibrium& rod,
                        const std::vector<std::size_t>& obstacles, const SolveOptions& options)
     : obstacles_(obstacles), settings_(now.force_model) {
-  if (turn_into_plane(now, now.force_model)) {
+  if (plane_transform(now, now.force_model)) {
     throw InputError(
         fmt::format("{}: a rod that is intrinsically curved, in a plane that is not z = 0, which a "
                     "moving polygon "
@@ -50,7 +50,7 @@ ForceTrack::ForceTrack(const Scene& now, const energy_model::Equilibrium& rod,
   discretisation_ = discretise(now, now.force_model);
   set_obstacles(now, obstacles, discretisation_);
   try {
-    simulation_.emplace(discretisation_.rod, start_on(discretisation_, rod),
+    simulation_.emplace(discretisation_.rod, points_on_shape(discretisation_, rod),
                         step_options(now.force_model, discretisation_));
   } catch (const std::invalid_argument& error) {
     throw InputError(fmt::format("{}: the force model: {}", now.file, error.what()));
@@ -97,8 +97,8 @@ ForceFrame ForceTrack::frame(const energy_model::Equilibrium& rod,
   return frame;
 }
 
-Lag lag_of(const std::vector<Eigen::Matrix3Xd>& leader,
-           const std::vector<Eigen::Matrix3Xd>& follower, double step) {
+Lag estimate_lag(const std::vector<Eigen::Matrix3Xd>& leader,
+                 const std::vector<Eigen::Matrix3Xd>& follower, double step) {
   constexpr std::size_t most_looks = 400;
   const std::size_t count = leader.size();
   double moved = 0;
@@ -132,9 +132,9 @@ Lag lag_of(const std::vector<Eigen::Matrix3Xd>& leader,
     part = (before - after) / (2 * bend);
     least = std::max(0.0, least - (before - after) * part / 4);
   }
-  const double looks = std::ceil(static_cast<double>(count) / static_cast<double>(stride));
+  const double samples = std::ceil(static_cast<double>(count) / static_cast<double>(stride));
   return {(static_cast<double>(best) + part) * step,
-          std::sqrt(least / (looks * static_cast<double>(leader.front().cols())))};
+          std::sqrt(least / (samples * static_cast<double>(leader.front().cols())))};
 }
 
 }  // namespace dlo::compare

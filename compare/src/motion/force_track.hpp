@@ -15,7 +15,7 @@
 namespace dlo::compare {
 
 /// Whether the force model is simulated besides the energy model.
-enum class ForceBeside { runs, absent };
+enum class ForceModelRun { runs, absent };
 
 /// State of the force model at the end of a frame.
 struct ForceFrame {
@@ -93,7 +93,7 @@ struct Lag {
 /// the best match, as for a follower that moves elsewhere.
 /// @param leader, follower  shapes at equal time steps [m], the same number of each
 /// @param step              time step [s]
-[[nodiscard]] Lag lag_of(const std::vector<Eigen::Matrix3Xd>& leader,
-                         const std::vector<Eigen::Matrix3Xd>& follower, double step);
+[[nodiscard]] Lag estimate_lag(const std::vector<Eigen::Matrix3Xd>& leader,
+                               const std::vector<Eigen::Matrix3Xd>& follower, double step);
 
 }  // namespace dlo::compare

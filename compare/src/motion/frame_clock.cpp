@@ -19,7 +19,7 @@ std::optional<double> recorded_start_time(const Scene& scene) {
 }
 
 FrameClock::FrameClock(const Scene& scene, const MotionPart& part, const TrackRates& rates) {
-  const std::optional<TimeSpan> motion = motion_of(scene);
+  const std::optional<TimeSpan> motion = motion_time_span(scene);
   if (!motion && !(scene.start && part.to)) {
     throw InputError(fmt::format(
         "{}: nothing moves (allowed: [[gripper.pose]] or [[obstacle.pose]] with time and "
@@ -51,9 +51,9 @@ double FrameClock::time(std::size_t frame) const {
 }
 
 double FrameClock::obstacle_time(std::size_t frame) const {
-  const double since = time(frame) - begin_;
+  const double elapsed = time(frame) - begin_;
   constexpr double rounding = 1e-9;
-  return std::min(end_, begin_ + std::floor(since * obstacle_rate_ + rounding) / obstacle_rate_);
+  return std::min(end_, begin_ + std::floor(elapsed * obstacle_rate_ + rounding) / obstacle_rate_);
 }
 
 Scene FrameClock::scene(const Scene& scene, std::size_t frame) const {

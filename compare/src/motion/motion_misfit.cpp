@@ -57,25 +57,28 @@ MotionMisfit::MotionMisfit(const Scene& scene, const std::vector<MarkerMotion>& 
           std::sqrt(scene.mass() * std::pow(scene.length, 3) / scene.softer_bending_stiffness())) {
   const double drag = scene.mass() / scene.length / natural_time_;
   // With this damping, a vibration with the natural time loses a few percent in each period.
-  constexpr double light = 0.02;
-  const auto usual = [](double given, double otherwise) { return given > 0 ? given : otherwise; };
+  constexpr double damping_ratio = 0.02;
+  const auto value_or = [](double given, double otherwise) {
+    return given > 0 ? given : otherwise;
+  };
   for (const MotionParameter what : fitted_) {
     switch (what) {
       case MotionParameter::stiffness:
         first_.push_back(1);
         break;
       case MotionParameter::material:
-        first_.push_back(usual(known.material, light * natural_time_));
+        first_.push_back(value_or(known.material, damping_ratio * natural_time_));
         break;
       case MotionParameter::air:
-        first_.push_back(usual(known.air, light * drag));
+        first_.push_back(value_or(known.air, damping_ratio * drag));
         break;
       case MotionParameter::quadratic:
-        first_.push_back(usual(known.quadratic, light * drag * natural_time_ / scene.length));
+        first_.push_back(
+            value_or(known.quadratic, damping_ratio * drag * natural_time_ / scene.length));
         break;
     }
   }
-  Eigen::Index next = physical();
+  Eigen::Index next = physical_parameters();
   for (const MarkerMotion& motion : recordings) {
     require_recording(scene, motion);
     Recorded recorded{
@@ -107,7 +110,7 @@ void MotionMisfit::restrict_to(double seconds) {
 }
 
 Eigen::Index MotionMisfit::parameters() const {
-  Eigen::Index count = physical();
+  Eigen::Index count = physical_parameters();
   for (const Recorded& recorded : recorded_) {
     count += recorded.deviation ? StartDeviation::size() : 0;
   }
@@ -181,7 +184,7 @@ Eigen::VectorXd MotionMisfit::simulated(const Scene& scene, const RodDamping& da
       moving.run(times, terms_, recorded.deviation ? fit_tolerance : usual_step_tolerance);
   Eigen::VectorXd result = Eigen::VectorXd::Constant(recorded.coordinates(), scene.length);
   if (run.moved.frames.size() < times.size()) {
-    stopped_ = run.why_stopped();
+    stopped_ = run.stop_reason();
     return result;
   }
   terms_ = run.moved.terms;
@@ -221,16 +224,16 @@ Eigen::VectorXd MotionMisfit::residuals(const Eigen::VectorXd& parameters) {
 Eigen::MatrixXd MotionMisfit::derivatives(const Eigen::VectorXd& parameters,
                                           const Eigen::VectorXd& here, Eigen::Index first) {
   Eigen::MatrixXd result = Eigen::MatrixXd::Zero(here.size(), parameters.size());
-  const auto beside = [&](Eigen::Index i, double difference) {
+  const auto perturbed = [&](Eigen::Index i, double difference) {
     Eigen::VectorXd moved = parameters;
     moved[i] += difference;
     return moved;
   };
-  for (Eigen::Index i = first; i < physical(); ++i) {
+  for (Eigen::Index i = first; i < physical_parameters(); ++i) {
     // A small damping changes little, so the difference is a fraction of the first guess.
     const double relative =
         parameter_difference * (is_damping(i) ? std::max(1.0, std::exp(-parameters[i])) : 1);
-    result.col(i) = (residuals(beside(i, std::log1p(relative))) - here) / relative;
+    result.col(i) = (residuals(perturbed(i, std::log1p(relative))) - here) / relative;
   }
   const Scene scene = scene_with(parameters);
   const RodDamping damped = damping(parameters);
@@ -241,7 +244,8 @@ Eigen::MatrixXd MotionMisfit::derivatives(const Eigen::VectorXd& parameters,
     for (Eigen::Index k = 0; k < modes; ++k) {
       const Eigen::Index i = recorded_[r].first_mode + k;
       result.col(i).segment(row, rows) =
-          (simulated(scene, damped, beside(i, parameter_difference), r) - here.segment(row, rows)) /
+          (simulated(scene, damped, perturbed(i, parameter_difference), r) -
+           here.segment(row, rows)) /
           parameter_difference;
     }
     row += rows;
@@ -274,7 +278,7 @@ LeastSquares least_squares(MotionMisfit& misfit, const Eigen::VectorXd& start, i
   // deviation.
   constexpr double small = 0.02;
   // Derivatives are kept as long as the predicted decrease falls by this factor in a step.
-  constexpr double kept = 0.25;
+  constexpr double least_reduction = 0.25;
   constexpr int most_tries = 8;
   // Marquardt's damping. It starts at zero, because shapes and velocities that no marker determines
   // are damped by the prior alone.
@@ -290,7 +294,7 @@ LeastSquares least_squares(MotionMisfit& misfit, const Eigen::VectorXd& start, i
     at.converged = decrease < small;
     if (at.converged || step == most_steps) return at;
     const bool stale = !renew;
-    renew = stale && !(decrease < kept * before);
+    renew = stale && !(decrease < least_reduction * before);
     if (renew) {
       before = 0;
       continue;
@@ -303,7 +307,7 @@ LeastSquares least_squares(MotionMisfit& misfit, const Eigen::VectorXd& start, i
       const Eigen::VectorXd residuals = misfit.residuals(parameters);
       improved = misfit.stopped().empty() && equations.sum(residuals, parameters) < sum;
       if (improved) {
-        for (Eigen::Index i = free; i < misfit.physical(); ++i) {
+        for (Eigen::Index i = free; i < misfit.physical_parameters(); ++i) {
           if (!misfit.is_damping(i)) continue;
           at.derivatives.col(i) *= std::exp(parameters[i] - at.parameters[i]);
         }

@@ -41,7 +41,7 @@ class MotionMisfit {
 
   [[nodiscard]] const std::vector<MotionParameter>& fitted() const { return fitted_; }
   /// Returns the number of physical parameters, which come before all others.
-  [[nodiscard]] Eigen::Index physical() const { return std::ssize(fitted_); }
+  [[nodiscard]] Eigen::Index physical_parameters() const { return std::ssize(fitted_); }
   [[nodiscard]] Eigen::Index parameters() const;
   /// Returns the number of coordinates of the markers within the restriction.
   [[nodiscard]] Eigen::Index coordinates() const;
@@ -59,7 +59,7 @@ class MotionMisfit {
   /// Returns a physical parameter [SI]; for the stiffness its ratio to the scene's.
   [[nodiscard]] double value(std::size_t number, double log) const;
   [[nodiscard]] bool is_damping(Eigen::Index parameter) const {
-    return parameter < physical() &&
+    return parameter < physical_parameters() &&
            fitted_[static_cast<std::size_t>(parameter)] != MotionParameter::stiffness;
   }
   /// Returns the nearest logarithm in the range of a physical parameter.
@@ -162,7 +162,7 @@ class NormalEquations {
     gradient_.head(free).setZero();
     normal_.diagonal() += prior_;
     // Second derivative of the prior by the damping itself.
-    for (Eigen::Index i = 0; i < misfit.physical(); ++i) {
+    for (Eigen::Index i = 0; i < misfit.physical_parameters(); ++i) {
       if (misfit.is_damping(i)) normal_(i, i) += prior_[i] * std::max(0.0, -at.parameters[i]);
     }
   }
@@ -176,7 +176,7 @@ class NormalEquations {
     for (;;) {
       const Eigen::VectorXd result = matrix.ldlt().solve(right);
       bool within = true;
-      for (Eigen::Index i = 0; i < misfit_.physical(); ++i) {
+      for (Eigen::Index i = 0; i < misfit_.physical_parameters(); ++i) {
         if (!misfit_.is_damping(i) || !(result[i] < lowest - rounding)) continue;
         within = false;
         right -= lowest * matrix.col(i);
@@ -193,7 +193,8 @@ class NormalEquations {
                                       Eigen::VectorXd parameters) const {
     for (Eigen::Index i = 0; i < step.size(); ++i) {
       parameters[i] += misfit_.is_damping(i) ? std::log1p(step[i]) : step[i];
-      if (i < misfit_.physical()) parameters[i] = MotionMisfit::within_bounds(parameters[i]);
+      if (i < misfit_.physical_parameters())
+        parameters[i] = MotionMisfit::within_bounds(parameters[i]);
     }
     return parameters;
   }

@@ -57,7 +57,7 @@ class SmoothMotion {
     Eigen::MatrixXd right(std::ssize(rows_), 3);
     for (Eigen::Index i = 0; i < matrix.rows(); ++i) {
       matrix.row(i) = rows_[static_cast<std::size_t>(i)];
-      right.row(i) = right_[static_cast<std::size_t>(i)];
+      right.row(i) = right_hand_sides_[static_cast<std::size_t>(i)];
     }
     coefficients_ = matrix.completeOrthogonalDecomposition().solve(right);
     const auto freedom =
@@ -86,20 +86,20 @@ class SmoothMotion {
           weight * std::pow((time - begin_) / duration_, static_cast<double>(p)) * along;
     }
     rows_.push_back(std::move(row));
-    right_.emplace_back(weight * right.transpose());
+    right_hand_sides_.emplace_back(weight * right.transpose());
   }
 
   double length_, begin_, duration_;
   Eigen::Index degree_, powers_;
   std::vector<Eigen::RowVectorXd> rows_;
-  std::vector<Eigen::RowVector3d> right_;
+  std::vector<Eigen::RowVector3d> right_hand_sides_;
   Eigen::MatrixX3d coefficients_;
   double noise_ = 0;
 };
 
 /// Returns the number of leading rows that have at most start_frames times.
 /// @param[out] times  these times
-std::size_t first_rows(const std::vector<MarkerPosition>& rows, std::set<double>& times) {
+std::size_t leading_rows(const std::vector<MarkerPosition>& rows, std::set<double>& times) {
   std::size_t count = 0;
   for (const MarkerPosition& at : rows) {
     times.insert(at.time);
@@ -175,7 +175,7 @@ MotionStart start_of(const std::shared_ptr<SmoothMotion>& motion, double duratio
 std::optional<MotionStart> smooth_start(const Scene& scene, const MarkerMotion& rows,
                                         double begin) {
   std::set<double> times;
-  const std::size_t count = first_rows(rows.positions, times);
+  const std::size_t count = leading_rows(rows.positions, times);
   std::set<double> known;
   for (std::size_t i = 0; i < count; ++i) known.insert(rows.positions[i].arc_length);
   Eigen::Index conditions = std::ssize(known);
@@ -183,8 +183,8 @@ std::optional<MotionStart> smooth_start(const Scene& scene, const MarkerMotion& 
     if (known.insert(gripper.at).second) ++conditions;
     if (gripper.direction) ++conditions;
   }
-  constexpr std::size_t fewest = 4;
-  if (known.size() < fewest || !are_dense(known, scene.length)) return std::nullopt;
+  constexpr std::size_t least_count = 4;
+  if (known.size() < least_count || !are_dense(known, scene.length)) return std::nullopt;
   // Polynomials through equidistant points oscillate if the degree exceeds twice the root of their
   // number.
   const auto degree = std::min<Eigen::Index>(

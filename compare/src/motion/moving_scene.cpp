@@ -23,18 +23,18 @@ constexpr double time_rounding = 1e-14;
 /// A leg of a trajectory, and the rotation of its directions at its start.
 struct TurnedLeg {
   TrajectoryLeg leg;
-  Eigen::Quaterniond first_turn;
+  Eigen::Quaterniond first_rotation;
 };
 
 /// Direction and roll of a rolling clamp at time zero.
-struct Rolling {
+struct RollingClamp {
   Eigen::Vector3d direction;
   double roll;
 };
 
 /// Returns the legs of a trajectory, with time zero at `begin`.
-std::vector<TurnedLeg> turned_legs(const Trajectory& way, double begin) {
-  std::vector<Pose> poses = way.poses();
+std::vector<TurnedLeg> turned_legs(const Trajectory& trajectory, double begin) {
+  std::vector<Pose> poses = trajectory.poses();
   for (Pose& pose : poses) pose.time -= begin;
   std::vector<TurnedLeg> result;
   Eigen::Quaterniond turn = Eigen::Quaterniond::Identity();
@@ -46,14 +46,15 @@ std::vector<TurnedLeg> turned_legs(const Trajectory& way, double begin) {
   return result;
 }
 
-energy_model::GripPose pose_on(const TurnedLeg& turned, const std::optional<Rolling>& first,
+energy_model::GripPose pose_on(const TurnedLeg& turned, const std::optional<RollingClamp>& first,
                                double time) {
   const TrajectoryLeg& leg = turned.leg;
   energy_model::GripPose pose;
   pose.position = leg.position(time);
   pose.velocity = leg.position(time, 1);
   pose.acceleration = leg.position(time, 2);
-  pose.turn = Eigen::Quaterniond(Eigen::AngleAxisd(leg.turned(time), leg.axis)) * turned.first_turn;
+  pose.turn =
+      Eigen::Quaterniond(Eigen::AngleAxisd(leg.turned(time), leg.axis)) * turned.first_rotation;
   pose.angular_velocity = leg.turned(time, 1) * leg.axis;
   pose.angular_acceleration = leg.turned(time, 2) * leg.axis;
   if (!first) return pose;
@@ -67,22 +68,22 @@ energy_model::GripPose pose_on(const TurnedLeg& turned, const std::optional<Roll
 }
 
 /// Returns a pose without velocities and accelerations.
-energy_model::GripPose standing_at(const energy_model::GripPose& end) {
+energy_model::GripPose pose_at_rest(const energy_model::GripPose& end) {
   energy_model::GripPose pose;
   pose.position = end.position;
   pose.turn = end.turn;
   return pose;
 }
 
-energy_model::GripPose pose_among(const std::vector<TurnedLeg>& legs,
-                                  const std::optional<Rolling>& first, double time) {
+energy_model::GripPose pose_on_legs(const std::vector<TurnedLeg>& legs,
+                                    const std::optional<RollingClamp>& first, double time) {
   const double earlier = time - time_rounding * std::abs(time);
   const auto leg =
       std::lower_bound(legs.begin(), legs.end(), earlier,
                        [](const TurnedLeg& turned, double t) { return turned.leg.to.time < t; });
-  if (leg == legs.end()) return standing_at(pose_on(legs.back(), first, legs.back().leg.to.time));
+  if (leg == legs.end()) return pose_at_rest(pose_on(legs.back(), first, legs.back().leg.to.time));
   if (!(earlier > leg->leg.from.time)) {
-    return standing_at(pose_on(legs.front(), first, legs.front().leg.from.time));
+    return pose_at_rest(pose_on(legs.front(), first, legs.front().leg.from.time));
   }
   return pose_on(*leg, first, time);
 }
@@ -103,7 +104,7 @@ std::vector<int> terms_to_try(int asked) {
 energy_model::MovingRod moving_rod(const Scene& scene, const std::vector<std::size_t>& obstacles,
                                    const FrameClock& clock, const RodDamping& damping) {
   const Scene first = clock.scene(scene, 0);
-  const Scene now = first.holds_twist() ? first : first.without_twist();
+  const Scene now = first.prescribes_twist() ? first : first.without_twist();
   const double begin = clock.time(0);
   energy_model::MovingRod rod;
   rod.problem = frame_problem(now, obstacles);
@@ -111,22 +112,22 @@ energy_model::MovingRod moving_rod(const Scene& scene, const std::vector<std::si
   rod.material_damping = damping.material;
   rod.air_drag = damping.air;
   rod.quadratic_drag = damping.quadratic + (scene.drag ? scene.drag->normal : 0);
-  const auto follow = [&](const Trajectory& way,
+  const auto follow = [&](const Trajectory& trajectory,
                           const std::optional<Eigen::Vector3d>& rolls_about = std::nullopt) {
-    for (const double time : trajectory_breaks(way, begin)) rod.breaks.push_back(time);
-    return trajectory_motion(way, begin, rolls_about);
+    for (const double time : trajectory_breaks(trajectory, begin)) rod.breaks.push_back(time);
+    return trajectory_motion(trajectory, begin, rolls_about);
   };
   for (std::size_t i = 0; i < scene.grippers.size(); ++i) {
     const Gripper& gripper = scene.grippers[i];
     const bool rolls = now.grippers[i].frame.has_value();
     rod.motions.push_back(
         gripper.trajectory.empty()
-            ? energy_model::standing(gripper.position)
+            ? energy_model::fixed_grip(gripper.position)
             : follow(gripper.trajectory, rolls ? now.grippers[i].direction : std::nullopt));
   }
   for (const std::size_t i : obstacles) {
-    const Trajectory& way = scene.obstacles[i].trajectory;
-    rod.obstacle_motions.push_back(way.empty() ? nullptr : follow(way));
+    const Trajectory& trajectory = scene.obstacles[i].trajectory;
+    rod.obstacle_motions.push_back(trajectory.empty() ? nullptr : follow(trajectory));
   }
   return rod;
 }
@@ -143,9 +144,9 @@ bool begins_in_motion(const energy_model::MovingRod& rod) {
 }
 
 /// Whether the directions of a trajectory's poses differ.
-bool changes_direction(const Trajectory& way) {
-  return std::ranges::any_of(way.poses(), [&](const Pose& pose) {
-    return pose.direction && *pose.direction != *way.poses().front().direction;
+bool changes_direction(const Trajectory& trajectory) {
+  return std::ranges::any_of(trajectory.poses(), [&](const Pose& pose) {
+    return pose.direction && *pose.direction != *trajectory.poses().front().direction;
   });
 }
 
@@ -163,25 +164,26 @@ energy_model::Inertia scene_inertia(const Scene& scene) {
   return inertia;
 }
 
-energy_model::GripMotion trajectory_motion(const Trajectory& way, double begin,
+energy_model::GripMotion trajectory_motion(const Trajectory& trajectory, double begin,
                                            const std::optional<Eigen::Vector3d>& rolls_about) {
-  if (way.poses().size() == 1) return energy_model::standing(way.poses().front().position);
-  std::vector<TurnedLeg> legs = turned_legs(way, begin);
-  const Eigen::Quaterniond before = pose_among(legs, std::nullopt, 0).turn;
-  for (TurnedLeg& turned : legs) turned.first_turn *= before.conjugate();
-  std::optional<Rolling> first;
-  const std::optional<double> roll = way.pose_at(begin).roll;
-  if (roll && rolls_about) first = Rolling{*rolls_about, *roll};
-  return [legs = std::move(legs), first](double time) { return pose_among(legs, first, time); };
+  if (trajectory.poses().size() == 1)
+    return energy_model::fixed_grip(trajectory.poses().front().position);
+  std::vector<TurnedLeg> legs = turned_legs(trajectory, begin);
+  const Eigen::Quaterniond before = pose_on_legs(legs, std::nullopt, 0).turn;
+  for (TurnedLeg& turned : legs) turned.first_rotation *= before.conjugate();
+  std::optional<RollingClamp> first;
+  const std::optional<double> roll = trajectory.pose_at(begin).roll;
+  if (roll && rolls_about) first = RollingClamp{*rolls_about, *roll};
+  return [legs = std::move(legs), first](double time) { return pose_on_legs(legs, first, time); };
 }
 
-std::vector<double> trajectory_breaks(const Trajectory& way, double begin) {
+std::vector<double> trajectory_breaks(const Trajectory& trajectory, double begin) {
   std::vector<double> result;
-  for (const Pose& pose : way.poses()) result.push_back(pose.time - begin);
+  for (const Pose& pose : trajectory.poses()) result.push_back(pose.time - begin);
   return result;
 }
 
-std::string SimulatedMotion::why_stopped() const {
+std::string SimulatedMotion::stop_reason() const {
   if (moved.status != energy_model::SolveStatus::time_limit) {
     return fmt::format("{} ({} terms; others by --terms)", moved.message, moved.terms);
   }
@@ -191,7 +193,7 @@ std::string SimulatedMotion::why_stopped() const {
 }
 
 void require_dynamic(const Scene& scene) {
-  if (scene.holds_twist() || scene.has_material_directors()) {
+  if (scene.prescribes_twist() || scene.has_material_directors()) {
     for (const Gripper& gripper : scene.grippers) {
       if (!gripper.frame || !changes_direction(gripper.trajectory)) continue;
       refuse(scene.file,
@@ -238,9 +240,9 @@ MovingScene::MovingScene(const Scene& scene, const FrameClock& clock, const RodD
 
 SimulatedMotion MovingScene::run(const std::vector<double>& times, int terms,
                                  double tolerance) const {
-  std::vector<double> since;
-  since.reserve(times.size());
-  for (const double time : times) since.push_back(time - begin_);
+  std::vector<double> elapsed;
+  elapsed.reserve(times.size());
+  for (const double time : times) elapsed.push_back(time - begin_);
   SimulatedMotion result;
   for (const int tried : terms_to_try(terms)) {
     if (result.moved.terms > 0) {
@@ -248,7 +250,7 @@ SimulatedMotion MovingScene::run(const std::vector<double>& times, int terms,
     }
     const Timer timer;
     try {
-      result.moved = energy_model::simulate(rod_, start_.shape, since,
+      result.moved = energy_model::simulate(rod_, start_.shape, elapsed,
                                             {.terms = tried,
                                              .tolerance = tolerance,
                                              .in_motion = in_motion_,

@@ -54,7 +54,7 @@ struct SimulatedMotion {
   double seconds = 0;  ///< duration of the computation [s], without the runs with too few terms
 
   /// Returns why the simulation ended early, and how it can continue.
-  [[nodiscard]] std::string why_stopped() const;
+  [[nodiscard]] std::string stop_reason() const;
 };
 
 /// Checks that a rod with inertia can be simulated.

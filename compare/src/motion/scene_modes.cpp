@@ -22,8 +22,8 @@ namespace dlo::compare {
 namespace {
 
 /// Improves a solver's shape by Newton's method until it is at rest to rounding.
-Eigen::Matrix3Xd rest_of(const Scene& scene, const Discretisation& polygon,
-                         Eigen::Matrix3Xd points) {
+Eigen::Matrix3Xd converged_points(const Scene& scene, const Discretisation& polygon,
+                                  Eigen::Matrix3Xd points) {
   for (const force_model::Grip& grip : polygon.rod.grips) {
     points.middleCols(grip.first_point, grip.targets.cols()) = grip.targets;
   }
@@ -43,7 +43,7 @@ Eigen::Matrix3Xd rest_of(const Scene& scene, const Discretisation& polygon,
 }
 
 /// Returns the square roots of the masses, in the order of the stiffness matrix.
-Eigen::VectorXd mass_roots(const Eigen::VectorXd& masses) {
+Eigen::VectorXd square_roots_of_masses(const Eigen::VectorXd& masses) {
   return masses.cwiseSqrt().transpose().replicate<3, 1>().reshaped();
 }
 
@@ -79,17 +79,18 @@ PhysicalSteps physical_steps(double point_mass, double stiffest, double slowest,
 }
 
 void add_polygon(const Scene& scene, const ModeOptions& options, SceneModes& result) {
-  if (scene.holds_twist()) {
-    result.no_polygon = "grippers twist the rod, and the polygon's frames are not followed here";
+  if (scene.prescribes_twist()) {
+    result.missing_polygon_reason =
+        "grippers twist the rod, and the polygon's frames are not followed here";
     return;
   }
   if (result.tension.value_or(0) != 0) {
-    result.no_polygon = "its points are at rest without the rod's tension";
+    result.missing_polygon_reason = "its points are at rest without the rod's tension";
     return;
   }
   const MovingPolygon polygon = polygon_at_rest(scene, options.solve);
   if (polygon.masses.size() == 0 || !(polygon.masses.minCoeff() > 0)) {
-    result.no_polygon = "a free point of the polygon has no mass";
+    result.missing_polygon_reason = "a free point of the polygon has no mass";
     return;
   }
   const PolygonModes weighed = polygon_modes(polygon.stiffness, polygon.masses);
@@ -98,19 +99,20 @@ void add_polygon(const Scene& scene, const ModeOptions& options, SceneModes& res
       polygon_modes(polygon.stiffness, Eigen::VectorXd::Ones(polygon.masses.size()));
   result.physical = physical_steps(polygon.masses.mean(), equal.squares.tail<1>()[0],
                                    result.modes.front().rod.omega_squared, options);
-  std::optional<force_model::StepOptions> own;
+  std::optional<force_model::StepOptions> step_settings;
   if (scene.force_model.stepper == Stepper::dynamic) {
-    own = step_options(scene.force_model, polygon.discretisation);
-    result.mass_of_steps = 1 / (options.rate * options.rate * own->c_F);
+    step_settings = step_options(scene.force_model, polygon.discretisation);
+    result.effective_point_mass = 1 / (options.rate * options.rate * step_settings->c_F);
   }
   for (SceneMode& mode : result.modes) {
     const Eigen::VectorXd movement = displacements_in_mode(mode.rod, scene, polygon);
     if (!(movement.norm() > 0)) continue;
     const PolygonModes::Match match = weighed.nearest(movement);
-    mode.polygon_likeness = match.likeness;
-    if (match.square > 0) mode.polygon_omega = std::sqrt(match.square);
-    if (!own) continue;
-    mode.stepped = stepped_mode(equal.nearest(movement).square, own->c_F, own->c_h, options.rate);
+    mode.polygon_kinetic_share = match.kinetic_share;
+    if (match.omega_squared > 0) mode.polygon_omega = std::sqrt(match.omega_squared);
+    if (!step_settings) continue;
+    mode.stepped = stepped_mode(equal.nearest(movement).omega_squared, step_settings->c_F,
+                                step_settings->c_h, options.rate);
   }
 }
 
@@ -134,7 +136,7 @@ MovingPolygon polygon_at_rest(const Scene& scene, const SolveOptions& options) {
   // The minimiser needs a potential, which the paper's law between unequal segments does not have.
   const Model model = settings.law == BendingLaw::paper ? Model::force : Model::chain;
   const Shape near = solve(scene, model, options).shape;
-  result.points = rest_of(scene, polygon, resample(near, polygon.arc_length).points);
+  result.points = converged_points(scene, polygon, resample(near, polygon.arc_length).points);
   force_model::StiffnessMatrix K = force_model::tangent_stiffness(polygon.rod, result.points);
   result.stiffness = std::move(K.entries);
   result.free = std::move(K.points);
@@ -148,24 +150,26 @@ MovingPolygon polygon_at_rest(const Scene& scene, const SolveOptions& options) {
 }
 
 PolygonModes polygon_modes(const Eigen::MatrixXd& stiffness, const Eigen::VectorXd& masses) {
-  const Eigen::VectorXd inverse = mass_roots(masses).cwiseInverse();
+  const Eigen::VectorXd inverse = square_roots_of_masses(masses).cwiseInverse();
   const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> solver(inverse.asDiagonal() * stiffness *
                                                               inverse.asDiagonal());
   return {masses, solver.eigenvalues(), inverse.asDiagonal() * solver.eigenvectors()};
 }
 
 PolygonModes::Match PolygonModes::nearest(const Eigen::VectorXd& movement) const {
-  constexpr double same = 1e-6;
-  const Eigen::VectorXd weighed = mass_roots(masses).cwiseAbs2().cwiseProduct(movement);
+  constexpr double tolerance = 1e-6;
+  const Eigen::VectorXd weighed = square_roots_of_masses(masses).cwiseAbs2().cwiseProduct(movement);
   const Eigen::VectorXd shares = (shapes.transpose() * weighed).cwiseAbs2() / movement.dot(weighed);
   Match best;
   for (Eigen::Index begin = 0; begin < squares.size();) {
     Eigen::Index end = begin + 1;
-    while (end < squares.size() && squares[end] - squares[begin] <= same * std::abs(squares[end])) {
+    while (end < squares.size() &&
+           squares[end] - squares[begin] <= tolerance * std::abs(squares[end])) {
       ++end;
     }
-    const double likeness = shares.segment(begin, end - begin).sum();
-    if (likeness > best.likeness) best = {squares.segment(begin, end - begin).mean(), likeness};
+    const double kinetic_share = shares.segment(begin, end - begin).sum();
+    if (kinetic_share > best.kinetic_share)
+      best = {squares.segment(begin, end - begin).mean(), kinetic_share};
     begin = end;
   }
   return best;
@@ -188,7 +192,7 @@ SceneModes scene_modes(const Scene& scene, const ModeOptions& options) {
   scene.require_no_couples("the linearised motion does");
   SceneModes result;
   energy_model::Vibrations found;
-  const energy_model::VibrationOptions own = {
+  const energy_model::VibrationOptions step_settings = {
       .count = options.count, .tolerance = 1e-8, .time_limit = options.solve.time_limit};
   try {
     const energy_model::Problem problem = scene_problem(scene);
@@ -200,7 +204,8 @@ SceneModes scene_modes(const Scene& scene, const ModeOptions& options) {
                         scene.file));
       }
       result.tension = options.tension.value_or(0);
-      found = energy_model::taut_vibrations(problem, scene_inertia(scene), *result.tension, own);
+      found = energy_model::taut_vibrations(problem, scene_inertia(scene), *result.tension,
+                                            step_settings);
     } else if (options.tension) {
       throw InputError(
           fmt::format("{}: tension = {:g} N: the rod's shape determines its tension (allowed: only "
@@ -208,7 +213,7 @@ SceneModes scene_modes(const Scene& scene, const ModeOptions& options) {
                       scene.file, *options.tension));
     } else {
       const energy_model::Equilibrium shape = solve_reference(scene, Model::energy, options.solve);
-      found = energy_model::vibrations(problem, scene_inertia(scene), shape, own);
+      found = energy_model::vibrations(problem, scene_inertia(scene), shape, step_settings);
     }
   } catch (const std::invalid_argument& error) {
     throw InputError(fmt::format("{}: {}", scene.file, error.what()));
@@ -224,7 +229,7 @@ SceneModes scene_modes(const Scene& scene, const ModeOptions& options) {
   try {
     add_polygon(scene, options, result);
   } catch (const ResultError& error) {
-    result.no_polygon = error.what();
+    result.missing_polygon_reason = error.what();
   }
   return result;
 }

@@ -38,8 +38,8 @@ struct PolygonModes {
 
   /// Mode, or modes of one frequency together, most similar to a given displacement.
   struct Match {
-    double square = 0;
-    double likeness = 0;  ///< their share of the kinetic energy of the displacement [-]
+    double omega_squared = 0;
+    double kinetic_share = 0;  ///< their share of the kinetic energy of the displacement [-]
   };
   /// Finds the modes most similar to a displacement.
   /// @param movement  displacement, in the order of the stiffness matrix
@@ -75,7 +75,7 @@ struct SteppedMode {
 struct SceneMode {
   energy_model::VibrationMode rod;
   std::optional<double> polygon_omega;  ///< frequency of the polygon with the rod's masses [rad/s]
-  double polygon_likeness = 0;          ///< see PolygonModes::Match::likeness [-]
+  double polygon_kinetic_share = 0;     ///< see PolygonModes::Match::kinetic_share [-]
   std::optional<SteppedMode> stepped;   ///< with the scene's own c_F and c_h
 };
 
@@ -93,10 +93,10 @@ struct PhysicalSteps {
 struct SceneModes {
   energy_model::SolveStatus status = energy_model::SolveStatus::not_run;  ///< rod's modes
   std::string message;
-  std::vector<SceneMode> modes;         ///< the slowest first
-  std::optional<double> tension;        ///< tension of a rod that clamps hold straight [N]
-  std::string no_polygon;               ///< why the polygon has no modes; empty if it has
-  std::optional<double> mass_of_steps;  ///< m* = dt^2 / c_F of the scene's stepper [kg]
+  std::vector<SceneMode> modes;                ///< the slowest first
+  std::optional<double> tension;               ///< tension of a rod that clamps hold straight [N]
+  std::string missing_polygon_reason;          ///< why the polygon has no modes; empty if it has
+  std::optional<double> effective_point_mass;  ///< m* = dt^2 / c_F of the scene's stepper [kg]
   std::optional<PhysicalSteps> physical;
 };
 

@@ -38,7 +38,7 @@ PartList parts_on(std::size_t obstacle, const std::vector<ContactPart>& contacts
 
 /// Pairs each of `fewer` with one of `more` in the same order, with the least sum of distances.
 /// Returns for each of `more` whether it has a partner.
-std::vector<bool> paired(const PartList& fewer, const PartList& more) {
+std::vector<bool> match_in_order(const PartList& fewer, const PartList& more) {
   const std::size_t n = fewer.size();
   const std::size_t m = more.size();
   // least[i][j]: least sum for the first i of `fewer` among the first j of `more`
@@ -119,7 +119,7 @@ class Tracker {
       if (index == 0) throw;
       return stop(time, error.what());
     }
-    const Moment& now = branch_.now();
+    const SolvedInstant& now = branch_.now();
     if (!energy_model::succeeded(now.rod.status)) {
       const std::string why = fmt::format("the energy model did not converge: {} ({} evaluations)",
                                           now.rod.message, now.rod.evaluations);
@@ -128,13 +128,13 @@ class Tracker {
     }
     TrackFrame frame{
         solution_of(now.scene, Model::energy, now.rod, result_.arc_length, branch_.obstacles())};
-    if (!keeps_turns(now.scene, frame)) return false;
+    if (!has_prescribed_turns(now.scene, frame)) return false;
     frame.energy = energies_of(now);
     frame.time = time;
     frame.followed = passage.kept;
     frame.seconds = timer.seconds();
-    if (index > 0 && !passage.stands) seconds_.push_back(frame.seconds);
-    if (index > 0 && !add_balance(passage, frame)) return false;
+    if (index > 0 && !passage.is_stationary) seconds_.push_back(frame.seconds);
+    if (index > 0 && !add_energy_balance(passage, frame)) return false;
     add_contact_events(frame);
     add_force(now, frame);
     result_.lost += frame.followed ? 0 : 1;
@@ -144,17 +144,18 @@ class Tracker {
   }
 
   /// Checks the turns. @return whether the shape has the turns that the clamps hold
-  bool keeps_turns(const Scene& now, const TrackFrame& frame) {
+  bool has_prescribed_turns(const Scene& now, const TrackFrame& frame) {
     const double time = clock_.time(result_.frames.size());
     if (result_.frames.empty()) {
-      const std::string lost = lost_turns(frame.linking);
+      const std::string lost = turns_mismatch_message(frame.linking);
       if (!lost.empty()) {
         throw ConvergenceError(fmt::format("{}: at {:g} s {}", scene_.file, time, lost));
       }
       return true;
     }
     const Scene before = clock_.scene(scene_, result_.frames.size() - 1);
-    std::string lost = lost_turns(before, result_.frames.back().linking, now, frame.linking);
+    std::string lost =
+        turns_mismatch_message(before, result_.frames.back().linking, now, frame.linking);
     return lost.empty() || stop(time, std::move(lost));
   }
 
@@ -165,7 +166,7 @@ class Tracker {
 
   /// Adds work and energy, and a snap if there is one.
   /// @return false if the work done does not allow the energy of the shape
-  bool add_balance(const Passage& passage, TrackFrame& frame) {
+  bool add_energy_balance(const Passage& passage, TrackFrame& frame) {
     frame.work = result_.frames.back().work + passage.work;
     frame.released = passage.released;
     frame.released_bound = passage.released_bound;
@@ -176,7 +177,7 @@ class Tracker {
                               "the work allows; a higher frame rate may keep the branch",
                               -frame.released));
     }
-    if (branch_.balances() && !(frame.released > frame.released_bound)) return true;
+    if (branch_.has_energy_balance() && !(frame.released > frame.released_bound)) return true;
     TrackEvent event;
     event.kind = passage.ended ? TrackEvent::Kind::snap : TrackEvent::Kind::lost;
     event.frame = result_.frames.size();
@@ -198,9 +199,9 @@ class Tracker {
     }
   }
 
-  void add_force(const Moment& now, TrackFrame& frame) {
+  void add_force(const SolvedInstant& now, TrackFrame& frame) {
     ForceTrackSummary& summary = result_.force;
-    if (options_.force == ForceBeside::absent) summary.none = "not requested";
+    if (options_.force == ForceModelRun::absent) summary.none = "not requested";
     if (!summary.none.empty()) return;
     const double steps = options_.rates.steps / options_.rates.frames;
     summary.steps_per_frame = std::max(1L, std::lround(steps));
@@ -251,7 +252,7 @@ class Tracker {
     summary.rest_error = result_.frames.front().force->error_over_length;
     summary.mean /= static_cast<double>(leader.size());
     summary.median_seconds = median(std::move(force_seconds_));
-    const Lag lag = lag_of(leader, follower, 1 / options_.rates.frames);
+    const Lag lag = estimate_lag(leader, follower, 1 / options_.rates.frames);
     summary.lag = lag.time;
     summary.error_without_lag = lag.rms / scene_.length;
   }
@@ -280,7 +281,7 @@ std::vector<ContactChange> contact_changes(const std::vector<ContactPart>& befor
     const bool begins = new_parts.size() > old_parts.size();
     const PartList& fewer = begins ? old_parts : new_parts;
     const PartList& more = begins ? new_parts : old_parts;
-    const std::vector<bool> has_pair = paired(fewer, more);
+    const std::vector<bool> has_pair = match_in_order(fewer, more);
     std::size_t next = 0;
     for (std::size_t j = 0; j < more.size(); ++j) {
       if (!has_pair[j]) {

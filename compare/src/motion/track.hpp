@@ -19,7 +19,7 @@ namespace dlo::compare {
 struct ContactChange {
   bool begins = true;              ///< contact begins, or a point contact becomes a line contact
   energy_model::ContactPart part;  ///< the contact after the change; if it ends, before the change
-  bool goes_on = false;            ///< the contact existed before, or continues to exist
+  bool contact_persists = false;   ///< the contact existed before, or continues to exist
 };
 
 /// Returns the changes from the contacts of one frame to those of the next. Contacts on one
@@ -36,7 +36,7 @@ struct TrackOptions {
   std::optional<double> from;  ///< [s]; empty: as MotionPart::from
   std::optional<double> to;    ///< [s], > from; empty: time of the last pose
   TrackRates rates;
-  ForceBeside force = ForceBeside::runs;
+  ForceModelRun force = ForceModelRun::runs;
   int samples = 41;  ///< points of a frame's shape, >= 2
   SolveOptions solve;
 };
@@ -50,7 +50,7 @@ struct TrackFrame : Solution {
   double work = 0;        ///< work of grippers and obstacles on the rod, since the first frame [J]
   /// Work since the frame before minus the increase of the energy, in a frame in which the rod left
   /// its branch only of the jumps, and the bound of its error by forces between those before and
-  /// after each step [J]. `released` is NaN if Branch::balances() is false.
+  /// after each step [J]. `released` is NaN if Branch::has_energy_balance() is false.
   double released = 0, released_bound = 0;
   std::optional<ForceFrame> force;
 };

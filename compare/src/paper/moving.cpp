@@ -20,12 +20,12 @@ constexpr int frame_stride = 50;
 constexpr int first_seen_frame = static_cast<int>(movement_begins * 1000) + frame_stride / 2;
 
 /// Distance of the clamp from the third point, half a segment along the rod [m].
-double clamp_lead() { return table_1().segment() / 2; }
+double clamp_distance() { return table_1().segment() / 2; }
 
 /// Returns the gripper's pose. At the beginning and the end of the movement its rates are those
 /// just after.
 /// @param time  [s]
-MovingPose moving_pose(const MovingExperiment& experiment, const MovingChoices& choices,
+MovingPose moving_pose(const MovingExperiment& experiment, const MovingAssumptions& choices,
                        double time) {
   constexpr double takes = movement_ends - movement_begins;
   const double share = std::clamp((time - movement_begins) / takes, 0.0, 1.0);
@@ -50,13 +50,13 @@ MovingPose moving_pose(const MovingExperiment& experiment, const MovingChoices& 
   return result;
 }
 
-energy_model::GripPose clamp_pose(const MovingExperiment& experiment, const MovingChoices& choices,
-                                  double time) {
+energy_model::GripPose clamp_pose(const MovingExperiment& experiment,
+                                  const MovingAssumptions& choices, double time) {
   const MovingPose first = moving_pose(experiment, choices, 0);
   const MovingPose now = moving_pose(experiment, choices, time);
   const Eigen::Vector3d along = now.direction();
   const Eigen::Vector3d across(-along.y(), along.x(), 0);
-  const double lead = clamp_lead();
+  const double lead = clamp_distance();
   energy_model::GripPose pose;
   pose.position = now.position + lead * along;
   pose.velocity = now.velocity + lead * now.angle_rate * across;
@@ -67,7 +67,7 @@ energy_model::GripPose clamp_pose(const MovingExperiment& experiment, const Movi
 }
 
 energy_model::MovingRod reference_rod(const MovingExperiment& experiment,
-                                      const MovingChoices& choices) {
+                                      const MovingAssumptions& choices) {
   const Table1& table = table_1();
   energy_model::MovingRod rod;
   rod.problem.length = table.length;
@@ -95,7 +95,7 @@ Eigen::Matrix3Xd targets(const MovingPose& pose) {
   return force_model::grip_targets(pose.position, pose.direction(), table_1().segment(), 0);
 }
 
-force_model::Rod moving_rod(const MovingPose& start, const MovingChoices& choices) {
+force_model::Rod moving_rod(const MovingPose& start, const MovingAssumptions& choices) {
   const Table1& table = table_1();
   force_model::Rod rod;
   rod.rest_lengths = Eigen::VectorXd::Constant(table.points - 1, table.segment());
@@ -113,7 +113,7 @@ force_model::Rod moving_rod(const MovingPose& start, const MovingChoices& choice
   return rod;
 }
 
-Eigen::Matrix3Xd start_points(const MovingPose& start, const MovingChoices& choices) {
+Eigen::Matrix3Xd start_points(const MovingPose& start, const MovingAssumptions& choices) {
   const Table1& table = table_1();
   Eigen::Matrix3Xd points(3, table.points);
   for (Eigen::Index i = 0; i < table.points; ++i) {
@@ -142,8 +142,8 @@ Eigen::Vector3d add_force(const force_model::Simulation& simulation, MovingRun& 
 
 }  // namespace
 
-PointReading point_reading(double c_F, double c_h) {
-  PointReading result;
+PointParameters point_parameters(double c_F, double c_h) {
+  PointParameters result;
   result.mass = time_step * time_step / c_F;
   result.damping_rate = (1 - c_h) / time_step;
   result.drag = result.mass * result.damping_rate;
@@ -155,7 +155,8 @@ double reference_bending_stiffness() {
   return equivalent_bending_stiffness(table_1().c_b, table_1().segment(), design_angle);
 }
 
-MovingReference moving_reference(const MovingExperiment& experiment, const MovingChoices& choices) {
+MovingReference moving_reference(const MovingExperiment& experiment,
+                                 const MovingAssumptions& choices) {
   MovingReference result;
   const energy_model::MovingRod rod = reference_rod(experiment, choices);
   const energy_model::Equilibrium rest = energy_model::solve_energy(rod.problem);
@@ -182,30 +183,30 @@ MovingReference moving_reference(const MovingExperiment& experiment, const Movin
   return result;
 }
 
-MovingError moving_error(const MovingExperiment& experiment, const MovingChoices& choices,
+MovingError moving_error(const MovingExperiment& experiment, const MovingAssumptions& choices,
                          const MovingReference& reference) {
   MovingError error;
   double shapes = 0;
   double forces = 0;
-  std::size_t seen = 0;
+  std::size_t compared = 0;
   const auto observe = [&](int frame, const Eigen::Matrix3Xd& points,
                            const Eigen::Vector3d& force) {
-    if (seen == reference.points.size() || frame != reference.frames[seen]) return;
-    const Eigen::Matrix3Xd apart = (points - reference.points[seen]) / table_1().length;
-    shapes += apart.squaredNorm() / static_cast<double>(points.cols());
-    error.shape_max = std::max(error.shape_max, apart.colwise().norm().maxCoeff());
-    const double difference = (force - reference.forces[seen]).norm();
+    if (compared == reference.points.size() || frame != reference.frames[compared]) return;
+    const Eigen::Matrix3Xd deviation = (points - reference.points[compared]) / table_1().length;
+    shapes += deviation.squaredNorm() / static_cast<double>(points.cols());
+    error.shape_max = std::max(error.shape_max, deviation.colwise().norm().maxCoeff());
+    const double difference = (force - reference.forces[compared]).norm();
     forces += difference * difference;
     error.force_max = std::max(error.force_max, difference);
-    ++seen;
+    ++compared;
   };
   const MovingRun run = run_moving_experiment(experiment, choices, observe);
-  if (run.status != MovingStatus::finished || seen == 0 || !reference.converged) {
+  if (run.status != MovingStatus::finished || compared == 0 || !reference.converged) {
     const double none = std::numeric_limits<double>::infinity();
     return {none, none, none, none};
   }
-  error.shape_rms = std::sqrt(shapes / static_cast<double>(seen));
-  error.force_rms = std::sqrt(forces / static_cast<double>(seen));
+  error.shape_rms = std::sqrt(shapes / static_cast<double>(compared));
+  error.force_rms = std::sqrt(forces / static_cast<double>(compared));
   return error;
 }
 
@@ -213,7 +214,8 @@ Eigen::Vector3d MovingPose::direction() const { return {std::cos(angle), std::si
 
 double moving_weight() { return static_cast<double>(table_1().points) * table_1().point_weight; }
 
-force_model::StepOptions moving_step_options(MovingVariant variant, const MovingChoices& choices) {
+force_model::StepOptions moving_step_options(MovingVariant variant,
+                                             const MovingAssumptions& choices) {
   using force_model::Stepper;
   force_model::StepOptions options;
   options.policy = policy(variant == MovingVariant::basic       ? Stepper::basic
@@ -231,8 +233,8 @@ force_model::StepOptions moving_step_options(MovingVariant variant, const Moving
   return options;
 }
 
-MovingRun run_moving_experiment(const MovingExperiment& experiment, const MovingChoices& choices,
-                                const MovingObserver& observe) {
+MovingRun run_moving_experiment(const MovingExperiment& experiment,
+                                const MovingAssumptions& choices, const MovingObserver& observe) {
   constexpr long most_steps = nominal_moving_steps * 5 / 4;  // the largest printed number is 128770
   const MovingPose start = moving_pose(experiment, choices, 0);
   force_model::Simulation simulation(moving_rod(start, choices), start_points(start, choices),

@@ -64,7 +64,7 @@ struct MovingExperiment {
 
 /// Parameters of the experiments that the paper does not print. The defaults are the values that
 /// were found by hand to be closest to the printed rows; a report varies them one at a time.
-struct MovingChoices {
+struct MovingAssumptions {
   /// Unit of the lengths in Table 1's c_F (length per newton) and l_s [m]. Every force of the model
   /// is a stiffness times a ratio, so no other entry of the table determines it.
   double length_unit = 0.01;
@@ -79,7 +79,7 @@ struct MovingChoices {
   double start_offset = 0;
 
   /// Whether all members are equal.
-  bool operator==(const MovingChoices&) const = default;
+  bool operator==(const MovingAssumptions&) const = default;
 };
 
 /// Ending of an experiment.
@@ -134,7 +134,7 @@ using MovingObserver =
 
 /// Returns the constants of a step of a variant: Table 1's, completed by the choices.
 [[nodiscard]] force_model::StepOptions moving_step_options(MovingVariant variant,
-                                                           const MovingChoices& choices);
+                                                           const MovingAssumptions& choices);
 
 /// Simulates the rod of Table 1 (N = 10, law `paper`) through one experiment, with the catch-up
 /// loop of Text 1. A spring grip holds the third and the fourth point, since the third alone could
@@ -142,7 +142,8 @@ using MovingObserver =
 /// the frames that it has computed.
 /// @param observe  called after the steps of each frame; may be empty
 /// @throws std::invalid_argument if a choice is out of range
-MovingRun run_moving_experiment(const MovingExperiment& experiment, const MovingChoices& choices,
+MovingRun run_moving_experiment(const MovingExperiment& experiment,
+                                const MovingAssumptions& choices,
                                 const MovingObserver& observe = {});
 
 /// Physical parameters of a point that follows Formula 19. Rewritten, the formula is
@@ -150,7 +151,7 @@ MovingRun run_moving_experiment(const MovingExperiment& experiment, const Moving
 /// This is the Stoermer-Verlet step for points of mass m* = dt^2 / c_F with a damping rate of
 /// (1 - c_h) / dt: m* P'' = F - m* (1 - c_h) / dt P'. It does not apply to steps that are scaled
 /// down (c_m < 1).
-struct PointReading {
+struct PointParameters {
   double mass = 0;  ///< m* [kg]
   /// (1 - c_h) / dt [1/s]; 1 / dt for rows without dynamics, whose c_h is 0.
   double damping_rate = 0;
@@ -160,7 +161,7 @@ struct PointReading {
 
 /// Returns the parameters for steps with these constants, at nominal_moving_steps in 28 s.
 /// @param c_F  [m/N], > 0; @param c_h  0 without dynamics [-]
-[[nodiscard]] PointReading point_reading(double c_F, double c_h);
+[[nodiscard]] PointParameters point_parameters(double c_F, double c_h);
 
 /// Material damping of the reference, as a fraction of the critical damping of its first mode. The
 /// paper does not state any damping [-].
@@ -186,7 +187,7 @@ struct MovingReference {
 /// Computes the reference of the experiment's movement and rod, every 50 ms, beginning 25 ms after
 /// the beginning of the movement.
 [[nodiscard]] MovingReference moving_reference(const MovingExperiment& experiment,
-                                               const MovingChoices& choices);
+                                               const MovingAssumptions& choices);
 
 /// Distance of a run from the reference, over the reference's frames.
 struct MovingError {
@@ -199,7 +200,7 @@ struct MovingError {
 /// Repeats the experiment and compares it with the reference; all errors are infinite if the
 /// experiment or the reference did not finish.
 [[nodiscard]] MovingError moving_error(const MovingExperiment& experiment,
-                                       const MovingChoices& choices,
+                                       const MovingAssumptions& choices,
                                        const MovingReference& reference);
 
 }  // namespace dlo::compare

@@ -46,79 +46,82 @@ std::vector<MovingRow> read_printed_rows() {
   return rows;
 }
 
-bool near(long computed, long printed) { return 10 * std::abs(computed - printed) <= printed; }
+bool is_near_printed(long computed, long printed) {
+  return 10 * std::abs(computed - printed) <= printed;
+}
 
 /// Runs experiments and stores the results. Each combination of an experiment and the choices that
 /// affect it is run only once.
 class Runs {
  public:
-  void fill(std::vector<MovingRow>& rows, const MovingChoices& choices) {
+  void fill(std::vector<MovingRow>& rows, const MovingAssumptions& choices) {
     for (MovingRow& row : rows) row.run = run(row.experiment, choices);
   }
 
  private:
-  struct Done {
+  struct CachedRun {
     MovingExperiment experiment;
-    MovingChoices choices;
+    MovingAssumptions choices;
     MovingRun run;
   };
 
-  MovingRun run(const MovingExperiment& experiment, MovingChoices choices) {
-    const MovingChoices unused;
+  MovingRun run(const MovingExperiment& experiment, MovingAssumptions choices) {
+    const MovingAssumptions unused;
     const force_model::StepPolicy policy = moving_step_options(experiment.variant, choices).policy;
     if (experiment.movement != Movement::rotation) choices.angle = unused.angle;
     if (experiment.movement == Movement::rotation) choices.distance = unused.distance;
     if (!policy.momentum) choices.c_h = unused.c_h;
     if (!policy.damping) choices.c_s_change = unused.c_s_change;
-    for (const Done& done : done_) {
+    for (const CachedRun& done : cached_runs_) {
       if (done.experiment == experiment && done.choices == choices) return done.run;
     }
-    done_.push_back({experiment, choices, run_moving_experiment(experiment, choices)});
-    return done_.back().run;
+    cached_runs_.push_back({experiment, choices, run_moving_experiment(experiment, choices)});
+    return cached_runs_.back().run;
   }
 
-  std::vector<Done> done_;
+  std::vector<CachedRun> cached_runs_;
 };
 
 struct Variation {
   std::string name;
-  std::function<void(MovingChoices&)> change;
+  std::function<void(MovingAssumptions&)> change;
 };
 
-Variation vary(const char* name, double MovingChoices::*member, double value, double unit = 1) {
+Variation make_variation(const char* name, double MovingAssumptions::*member, double value,
+                         double unit = 1) {
   return {fmt::format(fmt::runtime(name), value),
-          [=](MovingChoices& choices) { choices.*member = value * unit; }};
+          [=](MovingAssumptions& choices) { choices.*member = value * unit; }};
 }
 
 /// Variations of the choices for Tables 2 and 4. Among the forces of the grip, 0.07848 N is the one
 /// from which the printed c_c and c_b follow, and 0.4905 N is Formula 14's m g at 1 % of a segment.
 std::vector<Variation> variations() {
   constexpr double degree = std::numbers::pi / 180;
-  return {{"nothing", [](MovingChoices&) {}},
-          vary("c_F, l_s in units of {} m", &MovingChoices::length_unit, 1),
-          vary("c_F, l_s in units of {} m", &MovingChoices::length_unit, 0.1),
-          vary("c_F, l_s in units of {} m", &MovingChoices::length_unit, 0.001),
-          vary("grip {} N at 5 % of a segment", &MovingChoices::grip_force, 0.07848),
-          vary("grip {} N at 5 % of a segment", &MovingChoices::grip_force, 0.4905),
-          vary("angle {} deg", &MovingChoices::angle, 45, degree),
-          vary("angle {} deg", &MovingChoices::angle, 90, degree),
-          vary("angle {} deg", &MovingChoices::angle, 135, degree),
-          vary("angle {} deg", &MovingChoices::angle, 180, degree),
-          vary("distance {} m", &MovingChoices::distance, 0.05),
-          vary("distance {} m", &MovingChoices::distance, 0.2),
-          vary("c_h = {}", &MovingChoices::c_h, 0.8),
-          vary("c_h = {}", &MovingChoices::c_h, 0.9),
-          vary("c_h = {}", &MovingChoices::c_h, 0.98),
-          vary("c_s grows by {}", &MovingChoices::c_s_change, 1),
-          vary("starts {} segment behind", &MovingChoices::start_offset, 1)};
+  return {{"nothing", [](MovingAssumptions&) {}},
+          make_variation("c_F, l_s in units of {} m", &MovingAssumptions::length_unit, 1),
+          make_variation("c_F, l_s in units of {} m", &MovingAssumptions::length_unit, 0.1),
+          make_variation("c_F, l_s in units of {} m", &MovingAssumptions::length_unit, 0.001),
+          make_variation("grip {} N at 5 % of a segment", &MovingAssumptions::grip_force, 0.07848),
+          make_variation("grip {} N at 5 % of a segment", &MovingAssumptions::grip_force, 0.4905),
+          make_variation("angle {} deg", &MovingAssumptions::angle, 45, degree),
+          make_variation("angle {} deg", &MovingAssumptions::angle, 90, degree),
+          make_variation("angle {} deg", &MovingAssumptions::angle, 135, degree),
+          make_variation("angle {} deg", &MovingAssumptions::angle, 180, degree),
+          make_variation("distance {} m", &MovingAssumptions::distance, 0.05),
+          make_variation("distance {} m", &MovingAssumptions::distance, 0.2),
+          make_variation("c_h = {}", &MovingAssumptions::c_h, 0.8),
+          make_variation("c_h = {}", &MovingAssumptions::c_h, 0.9),
+          make_variation("c_h = {}", &MovingAssumptions::c_h, 0.98),
+          make_variation("c_s grows by {}", &MovingAssumptions::c_s_change, 1),
+          make_variation("starts {} segment behind", &MovingAssumptions::start_offset, 1)};
 }
 
 std::vector<Variation> table_3_variations() {
-  return {{"nothing", [](MovingChoices&) {}},
-          vary("distance {} m", &MovingChoices::distance, 0.05),
-          vary("distance {} m", &MovingChoices::distance, 0.15),
-          vary("distance {} m", &MovingChoices::distance, 0.25),
-          vary("distance {} m", &MovingChoices::distance, 1)};
+  return {{"nothing", [](MovingAssumptions&) {}},
+          make_variation("distance {} m", &MovingAssumptions::distance, 0.05),
+          make_variation("distance {} m", &MovingAssumptions::distance, 0.15),
+          make_variation("distance {} m", &MovingAssumptions::distance, 0.25),
+          make_variation("distance {} m", &MovingAssumptions::distance, 1)};
 }
 
 std::vector<MovingScanEntry> scan(const std::vector<MovingRow>& rows,
@@ -128,7 +131,7 @@ std::vector<MovingScanEntry> scan(const std::vector<MovingRow>& rows,
     MovingScanEntry entry{.varied = variation.name, .rows = rows};
     variation.change(entry.choices);
     runs.fill(entry.rows, entry.choices);
-    entry.distance = moving_distance(entry.rows);
+    entry.distance = moving_agreement(entry.rows);
     result.push_back(std::move(entry));
   }
   return result;
@@ -153,10 +156,10 @@ void add_errors(MovingReport& report) {
   }
 }
 
-std::string reading_verdict(const MovingChoices& choices) {
+std::string describe_point_parameters(const MovingAssumptions& choices) {
   const double c_F = table_1().c_F * choices.length_unit;
-  const PointReading dynamic = point_reading(c_F, choices.c_h);
-  const PointReading without = point_reading(c_F, 0);
+  const PointParameters dynamic = point_parameters(c_F, choices.c_h);
+  const PointParameters without = point_parameters(c_F, 0);
   const auto points = static_cast<double>(table_1().points);
   const double real = table_1().mass / points;
   return fmt::format(
@@ -178,7 +181,7 @@ std::vector<std::string> findings(const MovingReport& report) {
   const double grip_stiffness = table_1().grip_force / (0.05 * segment);
   const double weight = table_1().point_weight;
   return {
-      reading_verdict(report.choices),
+      describe_point_parameters(report.choices),
       fmt::format(
           "Errors are against the moving energy model: the rod's length, 10 g, {:.4f} N of weight, "
           "EI = {:.3g} N m^2 (the moment of Table 1's c_b at its 2.5 degrees), clamped in the "
@@ -219,8 +222,8 @@ std::vector<std::string> findings(const MovingReport& report) {
 
 }  // namespace
 
-MovingDistance moving_distance(const std::vector<MovingRow>& rows) {
-  MovingDistance distance;
+MovingAgreement moving_agreement(const std::vector<MovingRow>& rows) {
+  MovingAgreement distance;
   double squares = 0;
   int printed_rows = 0;
   for (const MovingRow& row : rows) {
@@ -233,10 +236,11 @@ MovingDistance moving_distance(const std::vector<MovingRow>& rows) {
                                  : std::numeric_limits<double>::infinity();
     squares += logarithm * logarithm;
     distance.counters += 3;
-    distance.counters_near += static_cast<int>(near(run.steps - nominal_moving_steps,
-                                                    printed.steps - nominal_moving_steps)) +
-                              static_cast<int>(near(run.damped_steps, printed.damped_steps)) +
-                              static_cast<int>(near(run.limited_steps, printed.limited_steps));
+    distance.matching_counters +=
+        static_cast<int>(is_near_printed(run.steps - nominal_moving_steps,
+                                         printed.steps - nominal_moving_steps)) +
+        static_cast<int>(is_near_printed(run.damped_steps, printed.damped_steps)) +
+        static_cast<int>(is_near_printed(run.limited_steps, printed.limited_steps));
   }
   distance.force_factor = std::exp(std::sqrt(squares / printed_rows));
   return distance;
@@ -261,7 +265,7 @@ MovingReport moving_report() {
   Runs runs;
   report.rows = moving_rows();
   runs.fill(report.rows, report.choices);
-  report.distance = moving_distance(report.rows);
+  report.distance = moving_agreement(report.rows);
   std::vector<MovingRow> tables_2_and_4;
   std::vector<MovingRow> table_3;
   for (const MovingRow& row : read_printed_rows()) {

@@ -28,32 +28,32 @@ struct MovingRow {
 };
 
 /// Agreement of runs with the printed rows.
-struct MovingDistance {
+struct MovingAgreement {
   /// exp of the RMS of ln(computed / printed) of the average forces: 1 means equal, 2 a typical
   /// factor of two. Infinite if a run diverged or was stopped.
   double force_factor = 0;
   /// Number of counters (steps beyond the nominal ones, c_s != 1, d_m > l_s) within 10 % of the
   /// printed value; a printed 0 requires 0.
-  int counters_near = 0;
+  int matching_counters = 0;
   int counters = 0;  ///< number of printed counters
 };
 
 /// Compares the rows that have a printed row.
-[[nodiscard]] MovingDistance moving_distance(const std::vector<MovingRow>& rows);
+[[nodiscard]] MovingAgreement moving_agreement(const std::vector<MovingRow>& rows);
 
 /// Rows for choices that differ from the defaults in one parameter.
 struct MovingScanEntry {
   std::string varied;           ///< the varied parameter, "nothing" for the defaults
-  MovingChoices choices;        ///< parameters with which the rows were computed
+  MovingAssumptions choices;    ///< parameters with which the rows were computed
   std::vector<MovingRow> rows;  ///< one per experiment
-  MovingDistance distance;      ///< agreement of the rows with the printed ones
+  MovingAgreement distance;     ///< agreement of the rows with the printed ones
 };
 
 /// Tables 2 to 4, and their dependence on parameters that the paper does not print.
 struct MovingReport {
-  MovingChoices choices;        ///< the choices of `rows`
+  MovingAssumptions choices;    ///< the choices of `rows`
   std::vector<MovingRow> rows;  ///< one per experiment
-  MovingDistance distance;      ///< agreement of `rows` with the printed rows
+  MovingAgreement distance;     ///< agreement of `rows` with the printed rows
   /// Largest energy error of the dynamic energy model, divided by its largest energy.
   double reference_energy_error = 0;
   std::vector<MovingScanEntry> scan;          ///< rows of Tables 2 and 4

@@ -124,7 +124,7 @@ PaperReport paper_report(const Stages& progress) {
   report.c_c = printed_contraction_stiffness();
   report.steps_per_second = paper_steps_per_second;
   report.tables = recompute_tables();
-  for (const PaperWeight weight : {PaperWeight::of_the_rod, PaperWeight::printed}) {
+  for (const PaperWeight weight : {PaperWeight::from_rod, PaperWeight::printed}) {
     for (Scene scene : paper_scenes()) {
       scene.force_model.c_c = printed_contraction_stiffness();
       if (weight == PaperWeight::printed) scene.force_model.point_weight = printed_point_weight();

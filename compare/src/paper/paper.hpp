@@ -32,7 +32,7 @@ struct ModulusAtTime {
 struct PaperCase {
   Comparison rest;                   ///< comparison at rest, with the paper's c_c
   std::vector<ModulusAtTime> creep;  ///< samples before the rod is at rest, in the order of time
-  PaperWeight weight = PaperWeight::of_the_rod;  ///< weight of every point
+  PaperWeight weight = PaperWeight::from_rod;  ///< weight of every point
 
   /// Returns the simulated time at which E*/E decreases below the paper's 1/3, interpolated between
   /// the samples by a power law; NaN if it does not [s].

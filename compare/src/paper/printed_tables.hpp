@@ -37,8 +37,8 @@ struct Table1 {
 
 /// Weight of the points of the paper's rod.
 enum class PaperWeight {
-  of_the_rod,  ///< rho A l g / N
-  printed,     ///< printed_point_weight()
+  from_rod,  ///< rho A l g / N
+  printed,   ///< printed_point_weight()
 };
 
 /// Returns the weight of a point that Table 5 prints, although it is that of Table 1's rod [N].

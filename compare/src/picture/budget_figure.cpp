@@ -24,7 +24,7 @@ Figure budget_figure(const Comparison& comparison) {
   int bar = 0;
   PlottedCurve bars{.id = "parts",
                     .title = setting_name(comparison.settings),
-                    .look = {.colour = curve_look(1).colour, .fill = "#C26C33"}};
+                    .look = {.colour = curve_style(1).colour, .fill = "#C26C33"}};
   for (const auto& [name, part] : shown_parts(comparison)) {
     const double percent = part->share * 100 + 0.0;
     const std::string share = fmt::format("{:.2f} %", percent);

@@ -18,7 +18,7 @@ Series worst_point(const ShapeCheck& check) {
   return {.id = "worst",
           .title = fmt::format("worst: point {}, {:.4g} mm", check.worst_point,
                                check.deviation.max_m * 1e3),
-          .look = worst_look(),
+          .look = worst_point_style(),
           .points = check.worst_position,
           .arc_length = {check.deviation.max_at_m}};
 }
@@ -44,7 +44,7 @@ Figure distance_figure(const Scene& scene, const ShapeCheck& check,
   panel.curves = {std::move(impulses),
                   std::move(points),
                   {.title = "the worst",
-                   .look = worst_look(),
+                   .look = worst_point_style(),
                    .x = {check.deviation.max_at_m},
                    .y = {check.deviation.max_m * 1e3}}};
   add_levels(panel, check.deviation.rms_m, allowed_m, check.deviation.max_m, scene.length);
@@ -53,7 +53,9 @@ Figure distance_figure(const Scene& scene, const ShapeCheck& check,
 
 }  // namespace
 
-Look worst_look() { return {.colour = red, .width = 0, .mark = Mark::circle, .mark_size = 1.8}; }
+CurveStyle worst_point_style() {
+  return {.colour = red, .width = 0, .mark = Mark::circle, .mark_size = 1.8};
+}
 
 Series distance_series(const Shape& file, const Shape& rod) {
   Series series{
@@ -83,7 +85,7 @@ Series file_series(const Shape& file) {
 
 void add_levels(Panel& panel, double rms_m, std::optional<double> allowed_m, double largest_m,
                 double length) {
-  const auto level = [&](double m, const char* what, const Look& look) {
+  const auto level = [&](double m, const char* what, const CurveStyle& look) {
     panel.curves.push_back({.title = fmt::format("{} {:.4g} mm", what, m * 1e3),
                             .look = look,
                             .x = {-HUGE_VAL, HUGE_VAL},

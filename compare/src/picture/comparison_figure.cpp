@@ -13,10 +13,10 @@ namespace {
 Figure deviation_figure(const Scene& scene, const Comparison& comparison) {
   const Shape& shape = comparison.force.shape;
   const Deviation& deviation = comparison.deviation;
-  const std::string colour = curve_look(1).colour;
+  const std::string colour = curve_style(1).colour;
   PlottedCurve distances{.id = "distance",
                          .title = setting_name(comparison.settings),
-                         .look = curve_look(1),
+                         .look = curve_style(1),
                          .x = shape.arc_length};
   for (Eigen::Index k = 0; k < shape.points.cols(); ++k) {
     distances.y.push_back((shape.points.col(k) - comparison.reference.points.col(k)).norm() * 1e3);
@@ -51,9 +51,9 @@ Drawing comparison_drawing(const Scene& scene, const Comparison& comparison) {
   all.push_back(rod);
   Series force = polygon_series(comparison.force.shape, scene, view);
   force.title = setting_name(comparison.settings);
-  force.look = curve_look(1);
+  force.look = curve_style(1);
   all.push_back(std::move(force));
-  if (auto unbent = unbent_series(scene)) all.push_back(std::move(*unbent));
+  if (auto unbent = straight_rod_series(scene)) all.push_back(std::move(*unbent));
   for (Series& gripper : gripper_series(scene)) all.push_back(std::move(gripper));
   const RodPoints points = [&](const std::vector<double>& s) {
     return comparison.reference_rod(s).points;

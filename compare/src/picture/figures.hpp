@@ -51,7 +51,7 @@ struct ComparisonFigures {
 [[nodiscard]] Series distance_series(const Shape& file, const Shape& rod);
 
 /// Returns the style of the mark at the worst point or frame.
-[[nodiscard]] Look worst_look();
+[[nodiscard]] CurveStyle worst_point_style();
 
 /// Adds horizontal lines at the RMS and at a tolerance to a plot of distances. A tolerance far
 /// above all distances is named only in the legend, since the plot would have to be extended to it.

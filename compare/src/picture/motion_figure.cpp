@@ -22,7 +22,7 @@ Series worst_point(const MotionCheck& check) {
   Series series{.id = "worst",
                 .title = fmt::format("worst: s = {:.4g} m, {:.4g} mm", worst.largest_at_m,
                                      worst.largest_m * 1e3),
-                .look = worst_look()};
+                .look = worst_point_style()};
   for (std::size_t i = 0; i < shapes.recorded.arc_length.size(); ++i) {
     if (shapes.recorded.arc_length[i] != worst.largest_at_m) continue;
     series.points = shapes.recorded.points.col(static_cast<Eigen::Index>(i));
@@ -49,7 +49,7 @@ Figure error_figure(const MotionCheck& check) {
                     .from = errors.frames.front().time,
                     .to = errors.frames.back().time},
               .y = {.label = "distance from the rod [mm]"}};
-  const auto add = [&](PlottedCurve curve, std::string title, Look look) {
+  const auto add = [&](PlottedCurve curve, std::string title, CurveStyle look) {
     curve.title = std::move(title);
     curve.look = std::move(look);
     panel.curves.push_back(std::move(curve));
@@ -64,7 +64,7 @@ Figure error_figure(const MotionCheck& check) {
         {.colour = green, .width = 2, .dashes = Dashes::dashed});
   }
   add({.x = {check.worst().time}, .y = {check.worst().rms_m * 1e3}},
-      fmt::format("the worst frame, at {:.4g} s", check.worst().time), worst_look());
+      fmt::format("the worst frame, at {:.4g} s", check.worst().time), worst_point_style());
   add_levels(panel, errors.rms_m, check.tolerance.allowed_m, errors.largest_m, check.scene.length);
   return {.title = "Distance of each frame", .panels = {std::move(panel)}};
 }
@@ -75,7 +75,7 @@ Drawing worst_frame_drawing(const MotionCheck& check) {
   const FrameShapes& shapes = check.worst_shapes;
   const Scene now = scene_at(check.scene, shapes.time);
   const std::vector<View> views =
-      views_of(now, side_by_side({&shapes.rod.points, &shapes.recorded.points}));
+      views_of(now, concatenated({&shapes.rod.points, &shapes.recorded.points}));
   std::vector<Series> all = obstacle_series(now, views, shapes.rod.points);
   all.push_back(distance_series(shapes.recorded, shapes.on_rod));
   if (shapes.rod_at_other_time) {

@@ -14,7 +14,7 @@ namespace {
 
 /// Gives magnitudes of curvature the sign of the curvature of the polygon of points, if that has
 /// one.
-std::vector<double> signed_as_points(const Solution& solution, const Series& turning) {
+std::vector<double> with_sign_of_polygon(const Solution& solution, const Series& turning) {
   std::vector<double> curvature = solution.curvature;
   const std::size_t count = curvature.size();
   for (std::size_t i = 0; i < count && count > 2; ++i) {
@@ -31,12 +31,12 @@ std::string title_of(const Solution& solution, std::size_t number, std::size_t c
                      solution.energy.total());
 }
 
-Look look_of(const Solution& solution, std::size_t i, std::size_t count) {
+CurveStyle solution_style(const Solution& solution, std::size_t i, std::size_t count) {
   const bool polygon = solution.model == Model::chain || solution.model == Model::force;
   const bool stable = is_stable(solution);
   // When colours repeat, dots are added between the dashes.
   const Dashes dashes = i < curve_colours ? Dashes::dashed : Dashes::dash_dotted;
-  return {.colour = count == 1 ? Look().colour : curve_look(i).colour,
+  return {.colour = count == 1 ? CurveStyle().colour : curve_style(i).colour,
           .width = stable ? 2 : 1.5,
           .dashes = stable ? Dashes::solid : dashes,
           .mark = polygon ? Mark::dot : Mark::none,
@@ -55,9 +55,9 @@ Drawing solution_drawing(const Scene& scene, const std::vector<Solution>& soluti
   std::vector<const Eigen::Matrix3Xd*> points;
   points.reserve(solutions.size());
   for (const Solution& solution : solutions) points.push_back(&solution.shape.points);
-  const std::vector<View> views = views_of(scene, side_by_side(points));
+  const std::vector<View> views = views_of(scene, concatenated(points));
   std::vector<Series> all = obstacle_series(scene, views, *points.front());
-  if (auto unbent = unbent_series(scene)) all.push_back(std::move(*unbent));
+  if (auto unbent = straight_rod_series(scene)) all.push_back(std::move(*unbent));
   const bool planar = are_planar(scene, solutions);
   // The stable solutions come first in the list and are drawn on top.
   for (std::size_t k = solutions.size(); k-- > 0;) {
@@ -65,8 +65,8 @@ Drawing solution_drawing(const Scene& scene, const std::vector<Solution>& soluti
     Series series = polygon_series(solution.shape, scene, views.front());
     series.id = fmt::format("solution_{}", k + 1);
     series.title = title_of(solution, k + 1, solutions.size());
-    series.look = look_of(solution, k, solutions.size());
-    series.curvature = planar ? signed_as_points(solution, series) : solution.curvature;
+    series.look = solution_style(solution, k, solutions.size());
+    series.curvature = planar ? with_sign_of_polygon(solution, series) : solution.curvature;
     all.push_back(std::move(series));
   }
   for (std::size_t k = 0; k < solutions.size(); ++k) {

@@ -59,7 +59,7 @@ Panel lines_panel(const std::vector<SweptField>& fields, const std::string& resu
               .y = {.label = result}};
   const std::size_t count = fields.size() > 1 ? fields[1].values.size() : 1;
   for (std::size_t i = 0; i < count; ++i) {
-    PlottedCurve line{.look = curve_look(i)};
+    PlottedCurve line{.look = curve_style(i)};
     if (count > 1) line.title = fields[1].column + " = " + fields[1].values[i];
     for (std::size_t k = 0; k * count + i < values.size(); ++k) {
       line.x.push_back(number_of(fields[0].values[k]));

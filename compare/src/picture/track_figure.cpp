@@ -17,7 +17,7 @@ namespace {
 constexpr std::size_t most_shapes = 9;
 constexpr double highest_strip = 420;  // [pixels]
 constexpr double label_pixels = 20;    // height of the time label of a cell, above its shape
-constexpr double air_pixels = 10;      // margin around the shape of a cell
+constexpr double margin_pixels = 10;   // margin around the shape of a cell
 constexpr std::size_t most_drawn_grippers = 3;  // half the number of different curve styles
 constexpr int load_plot = 190;                  // height [pixels]
 
@@ -40,7 +40,7 @@ Eigen::Matrix3Xd points_of(const TrackShapes& shapes, const std::vector<std::siz
     if (frame.force) parts.push_back(&frame.force->shape.points);
     if (shapes.has_moving(i)) parts.push_back(&shapes.moving->frames[i].points);
   }
-  return side_by_side(parts);
+  return concatenated(parts);
 }
 
 /// Grid of cells of equal size, each with one shape, all at the same scale.
@@ -82,17 +82,18 @@ Cells cells_for(const Eigen::Matrix3Xd& points, const View& view, int count) {
   Cells best{.pixels_per_metre = 0};
   for (int columns = 1; columns <= count; ++columns) {
     const int rows = (count + columns - 1) / columns;
-    const double across = (plot_width / static_cast<double>(columns) - 2 * air_pixels) / extent[0];
-    const double upwards = (highest_strip / rows - 2 * air_pixels - label_pixels) / extent[1];
+    const double across =
+        (plot_width / static_cast<double>(columns) - 2 * margin_pixels) / extent[0];
+    const double upwards = (highest_strip / rows - 2 * margin_pixels - label_pixels) / extent[1];
     const double scale = std::min(across, upwards);
     if (!(scale > best.pixels_per_metre)) continue;
     best = {.pixels_per_metre = scale, .columns = columns, .rows = rows};
   }
   // The cells fill the whole width; their height is what the shapes need.
   best.size = {plot_width / (best.columns * best.pixels_per_metre),
-               extent[1] + (2 * air_pixels + label_pixels) / best.pixels_per_metre};
+               extent[1] + (2 * margin_pixels + label_pixels) / best.pixels_per_metre};
   best.least = {least[0] - (best.size[0] - extent[0]) / 2,
-                least[1] - air_pixels / best.pixels_per_metre};
+                least[1] - margin_pixels / best.pixels_per_metre};
   return best;
 }
 
@@ -103,9 +104,9 @@ std::vector<Series> series_of(const Scene& now, const TrackShapes& shapes, std::
   const TrackFrame& frame = shapes.track.frames[index];
   std::vector<Series> all;
   for (Series& outline : obstacle_series(now, {view}, frame.shape.points)) {
-    Series seen = within(std::move(outline), view, cells.least,
-                         {cells.least[0] + cells.size[0], cells.least[1] + cells.size[1]});
-    if (!seen.arc_length.empty()) all.push_back(std::move(seen));
+    Series visible = within(std::move(outline), view, cells.least,
+                            {cells.least[0] + cells.size[0], cells.least[1] + cells.size[1]});
+    if (!visible.arc_length.empty()) all.push_back(std::move(visible));
   }
   if (frame.force) {
     all.push_back({.id = "force",
@@ -200,7 +201,7 @@ Panel load_panel(const Scene& scene, const TrackShapes& shapes, const char* labe
     if (shapes.moving == nullptr) continue;
     add(shapes.moving->frames, i, ", the rod with inertia", 2 * i + 1);
   }
-  const auto mark = [&](TrackEvent::Kind kind, const char* title, const Look& look) {
+  const auto mark = [&](TrackEvent::Kind kind, const char* title, const CurveStyle& look) {
     PlottedCurve uprights{.title = title, .look = look};
     for (const TrackEvent& event : shapes.track.events) {
       if (event.kind != kind) continue;

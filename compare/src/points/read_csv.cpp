@@ -48,8 +48,8 @@ bool has_arc_length(const std::vector<std::array<double, 4>>& rows) {
       const std::array<double, 4>& a = rows[i - 1];
       const std::array<double, 4>& b = rows[i];
       const double chord = unit * std::hypot(b[0] - a[0], b[1] - a[1], b[2] - a[2]);
-      const double way = growing ? b[3] - a[3] : a[3] - b[3];
-      if (!(way >= shortest * chord && way <= longest * chord)) return false;
+      const double step = growing ? b[3] - a[3] : a[3] - b[3];
+      if (!(step >= shortest * chord && step <= longest * chord)) return false;
     }
     return true;
   });
@@ -105,13 +105,13 @@ Columns columns_of_header(const std::vector<std::string_view>& fields, const std
                    [](char c) { return c >= 'A' && c <= 'Z' ? static_cast<char>(c + 32) : c; });
   }
   const bool has_nodes = std::ranges::find_first_of(names, label_names) != names.end();
-  std::string unread;
+  std::string ignored_fields;
   for (std::size_t i = 0; i < fields.size(); ++i) {
     const std::string& name = names[i];
     if (std::ranges::find(label_names, name) != std::end(label_names)) continue;
     const auto* found = std::find(std::begin(column_names), std::end(column_names), name);
     if (found == std::end(column_names) && has_nodes) {
-      unread += (unread.empty() ? "" : ", ") + quoted_piece(fields[i]);
+      ignored_fields += (ignored_fields.empty() ? "" : ", ") + quoted_piece(fields[i]);
       continue;
     }
     if (found == std::end(column_names)) {
@@ -133,8 +133,8 @@ Columns columns_of_header(const std::vector<std::string_view>& fields, const std
     throw InputError(fmt::format(
         "{}: {} of the columns d1_x, d1_y, d1_z (allowed: all of them, or none)", where, of_d1));
   }
-  if (!unread.empty()) {
-    columns.note = fmt::format("a table of nodes: the columns {} are not read", unread);
+  if (!ignored_fields.empty()) {
+    columns.note = fmt::format("a table of nodes: the columns {} are not read", ignored_fields);
   }
   return columns;
 }
@@ -172,8 +172,8 @@ void add_row(const CsvRow& row, const Columns& columns, RawShape& raw) {
 RawShape read_csv_shape(std::string_view text, const std::string& file) {
   RawShape raw;
   // Room for a header and one row more than allowed: the row too many is read and then rejected.
-  const CsvForm form{.separator = CsvForm::of_first_row,
-                     .around = " \t\r\"",
+  const CsvForm form{.separator = CsvForm::detect_from_first_row,
+                     .trimmed_characters = " \t\r\"",
                      .most_fields = most_columns,
                      .most_rows = static_cast<std::size_t>(most_shape_points) + 2};
   std::vector<CsvRow> rows;

@@ -27,12 +27,12 @@ constexpr Index most_fitted_points = 150;
 /// Distance from a plane, as a share of the length, up to which points lie in the plane.
 constexpr double plane_share = 1e-6;
 /// Distance of the farthest point, as a share of the length, below which no more arcs are tried.
-constexpr double good_enough_share = 1e-7;
+constexpr double sufficient_accuracy_share = 1e-7;
 /// Largest relative difference between the length of the points' curve and that of the rod.
 constexpr double length_tolerance = 0.05;
 /// Weight of an angle [rad] in the residual, compared with a distance divided by the length: the
 /// length of the shortest of equal arcs, as a share of the rod.
-constexpr double frame_lever = 1.0 / most_rest_arcs;
+constexpr double angle_weight = 1.0 / most_rest_arcs;
 
 /// Position and frame of a rod with the strains of an arc, at some arc length.
 struct ArcPlace {
@@ -51,7 +51,7 @@ struct ArcTarget {
   Eigen::Matrix3Xd points;
   Eigen::Matrix3Xd d1;  // first directors of the frames at the points; empty: arcs have no twist
   std::vector<double> s;
-  bool knows_s = false;  // false: inner points have the arc length of the nearest point
+  bool has_arc_lengths = false;  // false: inner points have the arc length of the nearest point
   double length = 0;
   bool planar = false;
   Vector3d normal;  // unit normal of the plane of the points, or nearest to them
@@ -65,16 +65,18 @@ struct ArcTarget {
   [[nodiscard]] Index numbers() const { return planar ? 1 : rows() - 1; }
 
   /// Whether a point's arc length is unknown and follows from the nearest point of the arcs.
-  [[nodiscard]] bool slides(Index i) const { return !knows_s && i > 0 && i + 1 < points.cols(); }
+  [[nodiscard]] bool has_free_arc_length(Index i) const {
+    return !has_arc_lengths && i > 0 && i + 1 < points.cols();
+  }
 };
 
-/// Stopping criteria of improve_arcs().
-struct ArcEffort {
+/// Stopping criteria of minimise_arc_residual().
+struct ArcFitLimits {
   int most_steps;
   double least_gain;  // smallest relative decrease of the sum of squares in a step
 };
-constexpr ArcEffort of_candidate{10, 3e-2};
-constexpr ArcEffort of_result{30, 1e-6};
+constexpr ArcFitLimits candidate_limits{10, 3e-2};
+constexpr ArcFitLimits result_limits{30, 1e-6};
 
 /// Returns position and frame at arc length `s` from the begin of an arc of constant strain.
 /// @param s  negative before the begin
@@ -95,7 +97,7 @@ ArcPlace along_arc(const ArcPlace& begin, const Vector3d& strain, double s) {
 }
 
 /// Returns positions and frames of arcs at arc lengths.
-std::vector<ArcPlace> places_on(const Arcs& on, const std::vector<double>& s) {
+std::vector<ArcPlace> evaluate_arcs(const Arcs& on, const std::vector<double>& s) {
   const std::vector<RestShape::Arc>& arcs = on.arcs;
   const auto begin_of = [&](std::size_t k) { return k > 0 ? arcs[k - 1].end : 0.0; };
   std::vector<ArcPlace> begins = {on.begin};
@@ -113,31 +115,31 @@ std::vector<ArcPlace> places_on(const Arcs& on, const std::vector<double>& s) {
 }
 
 /// Returns the residual: the vectors from the points to the arcs, divided by the length, three rows
-/// per point; with frames a fourth row, the angle of d1 times frame_lever. A vector of a point that
-/// slides() has no component along the arc.
+/// per point; with frames a fourth row, the angle of d1 times angle_weight. A vector of a point
+/// that has_free_arc_length() has no component along the arc.
 Eigen::VectorXd arc_residual(const ArcTarget& target, const Arcs& arcs) {
-  const std::vector<ArcPlace> places = places_on(arcs, target.s);
+  const std::vector<ArcPlace> places = evaluate_arcs(arcs, target.s);
   const Index rows = target.rows();
   Eigen::VectorXd r(rows * target.points.cols());
   for (Index i = 0; i < target.points.cols(); ++i) {
     const ArcPlace& at = places[static_cast<std::size_t>(i)];
     const Vector3d t = at.frame.col(2);
     Vector3d d = at.point - target.points.col(i);
-    if (target.slides(i)) d -= d.dot(t) * t;
+    if (target.has_free_arc_length(i)) d -= d.dot(t) * t;
     r.segment<3>(rows * i) = d / target.length;
     if (!target.twists()) continue;
     const Vector3d given = target.d1.col(i);
     r[rows * i + 3] =
-        frame_lever * std::atan2(-given.dot(at.frame.col(1)), given.dot(at.frame.col(0)));
+        angle_weight * std::atan2(-given.dot(at.frame.col(1)), given.dot(at.frame.col(0)));
   }
   return r;
 }
 
 /// Replaces unknown arc lengths by those of the nearest points of the arcs.
-void slide_along(ArcTarget& target, const Arcs& arcs) {
-  const std::vector<ArcPlace> places = places_on(arcs, target.s);
+void update_arc_lengths(ArcTarget& target, const Arcs& arcs) {
+  const std::vector<ArcPlace> places = evaluate_arcs(arcs, target.s);
   for (Index i = 0; i < target.points.cols(); ++i) {
-    if (!target.slides(i)) continue;
+    if (!target.has_free_arc_length(i)) continue;
     const auto [point, frame] = places[static_cast<std::size_t>(i)];
     double& s = target.s[static_cast<std::size_t>(i)];
     s = std::clamp(s + frame.col(2).dot(target.points.col(i) - point), 0.0, target.length);
@@ -185,23 +187,23 @@ bool in_order(const ArcTarget& target, const Arcs& arcs) {
 
 /// Fits arcs by the Levenberg-Marquardt method; unknown arc lengths are updated with them.
 /// @return the sum of squared residuals, which are distances divided by the length
-double improve_arcs(ArcTarget& target, Arcs& arcs, const ArcEffort& effort) {
+double minimise_arc_residual(ArcTarget& target, Arcs& arcs, const ArcFitLimits& effort) {
   constexpr double h = 1e-7;  // difference of a parameter, divided by its unit
   const Index count = arc_parameters(target, arcs.arcs.size());
   double damping = 1e-3;
   double sum = arc_residual(target, arcs).squaredNorm();
   for (int step = 0; step < effort.most_steps; ++step) {
     // Returns the residual of other arcs; points slide along them.
-    const auto residual = [&target](const Arcs& there) {
+    const auto residual = [&target](const Arcs& trial) {
       ArcTarget own = target;
-      slide_along(own, there);
-      return std::pair{arc_residual(own, there), std::move(own.s)};
+      update_arc_lengths(own, trial);
+      return std::pair{arc_residual(own, trial), std::move(own.s)};
     };
     const Eigen::VectorXd r = residual(arcs).first;
     Eigen::MatrixXd J(r.size(), count);
     for (Index k = 0; k < count; ++k) {
-      const Arcs beside = stepped_arcs(target, arcs, h * Eigen::VectorXd::Unit(count, k));
-      J.col(k) = (residual(beside).first - r) / h;
+      const Arcs perturbed = stepped_arcs(target, arcs, h * Eigen::VectorXd::Unit(count, k));
+      J.col(k) = (residual(perturbed).first - r) / h;
     }
     const Eigen::MatrixXd H = J.transpose() * J;
     const double before = sum;
@@ -271,7 +273,7 @@ Profile profile_of(const ArcTarget& target) {
 
 /// Returns the indices at which a profile is cut into intervals of constant strain. The first index
 /// is the cut that reduces the sum of squares most, and so on.
-std::vector<Index> cuts_of(const Eigen::Matrix3Xd& strain, std::size_t most) {
+std::vector<Index> best_cuts(const Eigen::Matrix3Xd& strain, std::size_t most) {
   const Index n = strain.cols();
   Eigen::Matrix3Xd sums = Eigen::Matrix3Xd::Zero(3, n + 1);
   for (Index j = 0; j < n; ++j) sums.col(j + 1) = sums.col(j) + strain.col(j);
@@ -340,8 +342,8 @@ void find_points_plane(ArcTarget& target) {
   if (spread(1) <= noise) {
     // A straight line has no normal of its own: the plane also contains the x axis, or else has the
     // normal z.
-    const Vector3d beside = first.cross(Vector3d::UnitX());
-    normal = beside.norm() > 1e-6 ? beside.normalized() : Vector3d(Vector3d::UnitZ());
+    const Vector3d across = first.cross(Vector3d::UnitX());
+    normal = across.norm() > 1e-6 ? across.normalized() : Vector3d(Vector3d::UnitZ());
   } else if (first.cross(normal).norm() < 0.1) {
     normal = axes.col(1);
   }
@@ -373,7 +375,7 @@ void require_small_turns(const ArcTarget& target, const std::string& file) {
   }
 }
 
-MeasuredShape forwards(const MeasuredShape& points) {
+MeasuredShape with_increasing_arc_length(const MeasuredShape& points) {
   const std::vector<double>& s = points.arc_length;
   if (s.empty() || s.back() > s.front()) return points;
   return {points.file, points.points.rowwise().reverse(), std::vector<double>(s.rbegin(), s.rend()),
@@ -393,10 +395,10 @@ std::vector<double> all_arc_lengths(const std::vector<Index>& chosen,
 }
 
 /// Computes the errors of a rest shape over all measured points, not only the fitted ones.
-void state_error(ArcTarget all, const Arcs& arcs, RestShape& shape) {
+void set_rest_shape_errors(ArcTarget all, const Arcs& arcs, RestShape& shape) {
   constexpr int projections = 5;
-  for (int i = 0; i < projections; ++i) slide_along(all, arcs);
-  const std::vector<ArcPlace> places = places_on(arcs, all.s);
+  for (int i = 0; i < projections; ++i) update_arc_lengths(all, arcs);
+  const std::vector<ArcPlace> places = evaluate_arcs(arcs, all.s);
   double sum = 0;
   for (Index i = 0; i < all.points.cols(); ++i) {
     const ArcPlace& at = places[static_cast<std::size_t>(i)];
@@ -413,21 +415,21 @@ void state_error(ArcTarget all, const Arcs& arcs, RestShape& shape) {
 }
 
 /// Returns the largest norm of the residual of one point, including its frame.
-double largest_part(const ArcTarget& target, const Arcs& arcs) {
+double largest_point_residual(const ArcTarget& target, const Arcs& arcs) {
   const Eigen::VectorXd r = arc_residual(target, arcs);
   return r.reshaped(target.rows(), target.points.cols()).colwise().norm().maxCoeff();
 }
 
 /// Returns Schwarz's criterion (BIC) divided by the number of residuals. A constant of the size of
 /// rounding keeps the logarithm finite.
-double arc_information(const ArcTarget& target, std::size_t arcs, double sum) {
+double schwarz_criterion(const ArcTarget& target, std::size_t arcs, double sum) {
   const auto n = static_cast<double>(target.points.cols() * target.numbers());
   constexpr double rounding = 1e-20;
   const auto p = static_cast<double>(arc_parameters(target, arcs));
   return std::log(sum / n + rounding) + p * std::log(n) / n;
 }
 
-std::vector<Index> spread_indices(Index count, Index chosen) {
+std::vector<Index> evenly_spread_indices(Index count, Index chosen) {
   std::vector<Index> result;
   result.reserve(static_cast<std::size_t>(chosen));
   for (Index k = 0; k < chosen; ++k) result.push_back(k * (count - 1) / (chosen - 1));
@@ -437,13 +439,13 @@ std::vector<Index> spread_indices(Index count, Index chosen) {
 /// Sets the arc lengths of the target's points, scaled to the rod's length.
 /// @return the length of the curve itself [m]
 /// @throws InputError if it differs from the rod's by more than length_tolerance
-double place_along(const MeasuredShape& given, const std::vector<Index>& chosen,
-                   const Profile& profile, ArcTarget& target) {
+double set_target_arc_lengths(const MeasuredShape& given, const std::vector<Index>& chosen,
+                              const Profile& profile, ArcTarget& target) {
   double curve = 0;
   target.s = {0};
   for (const double segment : profile.segments) target.s.push_back(curve += segment);
   if (!given.arc_length.empty()) {
-    target.knows_s = true;
+    target.has_arc_lengths = true;
     curve = given.arc_length.back() - given.arc_length.front();
     for (std::size_t k = 0; k < chosen.size(); ++k) {
       target.s[k] = given.arc_length[static_cast<std::size_t>(chosen[k])] - given.arc_length[0];
@@ -472,7 +474,7 @@ struct FittedArcs {
 FittedArcs fit_arcs(const ArcTarget& target, const Profile& profile, std::vector<Index> cuts) {
   const auto attempt = [&] {
     FittedArcs fit{target, first_guess(target, profile, cuts)};
-    fit.sum = improve_arcs(fit.target, fit.arcs, of_candidate);
+    fit.sum = minimise_arc_residual(fit.target, fit.arcs, candidate_limits);
     return fit;
   };
   FittedArcs at_jumps = attempt();
@@ -487,7 +489,7 @@ FittedArcs fit_arcs(const ArcTarget& target, const Profile& profile, std::vector
 
 /// Returns the fit with the number of arcs that Schwarz's criterion selects.
 FittedArcs best_arcs(const ArcTarget& target, const Profile& profile) {
-  const std::vector<Index> cuts = cuts_of(profile.strain, most_rest_arcs - 1);
+  const std::vector<Index> cuts = best_cuts(profile.strain, most_rest_arcs - 1);
   const Index residuals = target.points.cols() * target.numbers();
   FittedArcs best, last;
   double least = std::numeric_limits<double>::infinity();
@@ -496,15 +498,15 @@ FittedArcs best_arcs(const ArcTarget& target, const Profile& profile) {
     if (arcs > 1 && (arcs - 1 > cuts.size() || 2 * arc_parameters(target, arcs) > residuals)) break;
     const auto end = cuts.begin() + static_cast<std::ptrdiff_t>(arcs - 1);
     last = fit_arcs(target, profile, {cuts.begin(), end});
-    const double value = arc_information(target, arcs, last.sum);
+    const double value = schwarz_criterion(target, arcs, last.sum);
     worse = value < least ? 0 : worse + 1;
     if (value < least) {
       least = value;
       best = last;
     }
-    constexpr int enough_worse = 3;
-    if (worse == enough_worse) break;
-    if (largest_part(last.target, last.arcs) <= good_enough_share) break;
+    constexpr int most_worse = 3;
+    if (worse == most_worse) break;
+    if (largest_point_residual(last.target, last.arcs) <= sufficient_accuracy_share) break;
   }
   return best;
 }
@@ -512,14 +514,15 @@ FittedArcs best_arcs(const ArcTarget& target, const Profile& profile) {
 }  // namespace
 
 RestShape fit_rest_shape(const MeasuredShape& measured, double length) {
-  const MeasuredShape given = forwards(measured);
+  const MeasuredShape given = with_increasing_arc_length(measured);
   const Index count = given.points.cols();
-  constexpr Index fewest = 5;
-  if (count < fewest) {
+  constexpr Index least_count = 5;
+  if (count < least_count) {
     throw InputError(fmt::format("{}: {} points (allowed: {} or more of a rest shape)", given.file,
-                                 count, fewest));
+                                 count, least_count));
   }
-  const std::vector<Index> chosen = spread_indices(count, std::min(count, most_fitted_points));
+  const std::vector<Index> chosen =
+      evenly_spread_indices(count, std::min(count, most_fitted_points));
   ArcTarget target;
   target.length = length;
   target.points = given.points(Eigen::all, chosen);
@@ -527,9 +530,9 @@ RestShape fit_rest_shape(const MeasuredShape& measured, double length) {
   require_small_turns(target, given.file);
   find_points_plane(target);
   const Profile profile = profile_of(target);
-  const double curve = place_along(given, chosen, profile, target);
+  const double curve = set_target_arc_lengths(given, chosen, profile, target);
   FittedArcs best = best_arcs(target, profile);
-  (void)improve_arcs(best.target, best.arcs, of_result);
+  (void)minimise_arc_residual(best.target, best.arcs, result_limits);
 
   RestShape shape{.file = given.file,
                   .points = count,
@@ -540,12 +543,12 @@ RestShape fit_rest_shape(const MeasuredShape& measured, double length) {
   all.points = given.points;
   all.d1 = given.d1;
   all.s = all_arc_lengths(chosen, best.target.s);
-  if (target.knows_s) {
+  if (target.has_arc_lengths) {
     for (std::size_t i = 0; i < all.s.size(); ++i) {
       all.s[i] = (given.arc_length[i] - given.arc_length[0]) * length / curve;
     }
   }
-  state_error(all, best.arcs, shape);
+  set_rest_shape_errors(all, best.arcs, shape);
   return shape;
 }
 

@@ -39,7 +39,7 @@ ShapeName shape_name(const std::string& name) {
 constexpr const char* arrays_allowed = "(allowed: N x 3 or N x 2)";
 
 /// Returns the name that selects a frame of an array of frames.
-std::string chosen(const ShapeName& name, const std::string& index) {
+std::string frame_selector(const ShapeName& name, const std::string& index) {
   return fmt::format("{}:{}", name.file, index);
 }
 
@@ -53,7 +53,7 @@ std::size_t frame_of(const NpyArray& array, const ShapeName& name) {
         fmt::format("{} frames of {} points{} (allowed: one of them, as {} for the first and {} "
                     "for the last)",
                     n[0], n[1], name.index.empty() ? "" : ", no frame " + quoted_piece(name.index),
-                    chosen(name, "0"), chosen(name, "-1")));
+                    frame_selector(name, "0"), frame_selector(name, "-1")));
   }
   return static_cast<std::size_t>(*index < 0 ? *index + frames : *index);
 }
@@ -99,7 +99,7 @@ double distance_between(const std::array<double, 3>& a, const std::array<double,
   return std::hypot(a[0] - b[0], a[1] - b[1], a[2] - b[2]);
 }
 
-std::string where_point(const RawShape& raw, const std::string& file, std::size_t i) {
+std::string point_location(const RawShape& raw, const std::string& file, std::size_t i) {
   return raw.lines.empty() ? fmt::format("{}: point {}", file, i + 1)
                            : fmt::format("{}:{}: point {}", file, raw.lines[i], i + 1);
 }
@@ -108,7 +108,7 @@ void require_number(const RawShape& raw, const std::string& file, std::size_t i,
                     double value, double unit) {
   if (std::isfinite(value) && std::abs(value * unit) <= largest_coordinate) return;
   throw InputError(fmt::format("{}: {} = {:g} (allowed: numbers up to {:g} m)",
-                               where_point(raw, file, i), name, value, largest_coordinate));
+                               point_location(raw, file, i), name, value, largest_coordinate));
 }
 
 void require_points(const RawShape& raw, const std::string& file, double unit) {
@@ -124,7 +124,7 @@ void require_points(const RawShape& raw, const std::string& file, double unit) {
     if (i > 0 && !(unit * distance_between(raw.points[i], raw.points[i - 1]) > least_distance)) {
       throw InputError(
           fmt::format("{}: the same as the point before (allowed: distinct neighbours)",
-                      where_point(raw, file, i)));
+                      point_location(raw, file, i)));
     }
   }
 }
@@ -138,7 +138,7 @@ void require_arc_lengths(const RawShape& raw, const std::string& file, double un
     if (growing ? s[i] > s[i - 1] : s[i] < s[i - 1]) continue;
     throw InputError(
         fmt::format("{}: s = {} after {} (allowed: s grows from point to point, or falls)",
-                    where_point(raw, file, i), s[i], s[i - 1]));
+                    point_location(raw, file, i), s[i], s[i - 1]));
   }
 }
 
@@ -164,7 +164,7 @@ void require_unit_directors(const RawShape& raw, const std::string& file) {
     if (!(std::abs(d1.norm() - 1) <= rounding)) {
       throw InputError(
           fmt::format("{}: d1 = [{:g}, {:g}, {:g}] of norm {:.6g} (allowed: 1 within {:g})",
-                      where_point(raw, file, i), d1.x(), d1.y(), d1.z(), d1.norm(), rounding));
+                      point_location(raw, file, i), d1.x(), d1.y(), d1.z(), d1.norm(), rounding));
     }
     const std::size_t joint = std::clamp<std::size_t>(i, 1, std::max<std::size_t>(count - 2, 1));
     const Eigen::Vector3d before = chord(joint - 1);
@@ -174,18 +174,18 @@ void require_unit_directors(const RawShape& raw, const std::string& file) {
                                                      : Eigen::Vector3d(before + after);
     constexpr double right_angle = std::numbers::pi / 2;
     const double most = right_angle / 18 + angle(before, after);
-    const double off = std::abs(angle(d1, tangent) - right_angle);
-    if (off <= most) continue;
-    throw InputError(
-        fmt::format("{}: d1 is {:.3g} degrees off the cross-section (allowed: up to {:.3g}, 5 plus "
-                    "the bend of the rod there)",
-                    where_point(raw, file, i), off / right_angle * 90, most / right_angle * 90));
+    const double angle_error = std::abs(angle(d1, tangent) - right_angle);
+    if (angle_error <= most) continue;
+    throw InputError(fmt::format(
+        "{}: d1 is {:.3g} degrees off the cross-section (allowed: up to {:.3g}, 5 plus "
+        "the bend of the rod there)",
+        point_location(raw, file, i), angle_error / right_angle * 90, most / right_angle * 90));
   }
 }
 
 /// Returns the length of the polyline through 64 of the points at most: few enough that noise
 /// between neighbours hardly lengthens it.
-double coarse_polyline(const RawShape& raw) {
+double coarse_polyline_length(const RawShape& raw) {
   constexpr std::size_t most_chords = 63;
   const std::size_t last = raw.points.size() - 1;
   const std::size_t chords = std::min(most_chords, last);
@@ -204,7 +204,7 @@ double coarse_polyline(const RawShape& raw) {
 double arc_length_unit(const RawShape& raw, const std::string& file, double unit) {
   if (raw.arc_length.empty()) return unit;
   constexpr double longest = 5;
-  const double polyline = coarse_polyline(raw) * unit;
+  const double polyline = coarse_polyline_length(raw) * unit;
   const double span = std::abs(raw.arc_length.back() - raw.arc_length.front());
   if (polyline <= longest * span * unit) return unit;
   if (polyline <= longest * span) return 1;

@@ -17,12 +17,12 @@ namespace dlo::compare {
 namespace {
 
 /// Moment of a straight rod's load about a grip, on the side of the grip where it is larger [N m].
-struct RootMoment {
+struct ClampMoment {
   double along = 0;  ///< moment for the actual directions of the forces and of the rod
   double most = 0;   ///< moment if all forces were perpendicular to the rod
 };
 
-RootMoment root_moment(const Scene& scene, const Gripper& grip, double side) {
+ClampMoment clamp_moment(const Scene& scene, const Gripper& grip, double side) {
   const double rod = side > 0 ? scene.length - grip.at : grip.at;
   const Eigen::Vector3d direction = side * *grip.direction;
   Eigen::Vector3d moment = direction.cross(scene.weight_per_length()) * rod * rod / 2;
@@ -58,7 +58,7 @@ double design_curvature(const Scene& scene, const Layout& layout, const Eigen::M
   if (scene.grippers.size() == 1 && grip.direction) {
     double curvature = 0;
     for (const double side : {-1.0, 1.0}) {
-      const RootMoment moment = root_moment(scene, grip, side);
+      const ClampMoment moment = clamp_moment(scene, grip, side);
       curvature = std::max(curvature, std::max(moment.along, moment.most / 10));
     }
     return curvature / scene.bending_stiffness();
@@ -141,7 +141,7 @@ void derive_unlike_joints(const Scene& scene, const ForceModelSettings& settings
       bending.stiffnesses[i] = EI / scene.bending_stiffness() * bending.stiffness;
     }
   }
-  if (takes_twist(scene, settings)) {
+  if (models_twist(scene, settings)) {
     force_model::Twist& twist = result.rod.twist;
     twist.stiffness = scene.twisting_stiffness();
     if (!scene.sections.empty()) twist.stiffnesses.resize(joints);
@@ -151,8 +151,8 @@ void derive_unlike_joints(const Scene& scene, const ForceModelSettings& settings
           (cell.end - cell.begin) / scene.twisting_compliance(cell.begin, cell.end);
     }
   }
-  if (!takes_natural_curvature(scene, settings)) return;
-  if (turn_into_plane(scene, settings)) {
+  if (!models_natural_curvature(scene, settings)) return;
+  if (plane_transform(scene, settings)) {
     throw InputError(fmt::format(
         "{}: rod.natural_curvature: not in the plane z = 0 (allowed here: z = 0 of positions, "
         "directions, forces and normals; dlo solve and dlo compare turn other planes into it)",
@@ -294,7 +294,7 @@ Discretisation discretise(const Scene& scene, const ForceModelSettings& settings
   result.rod.rest_lengths = layout.rest_lengths;
   result.rod.c_c = result.parameters.c_c;
   result.rod.grips = grips_of(scene, layout);
-  require_fit(scene, settings, layout, result.rod.grips);
+  require_feasible_grips(scene, settings, layout, result.rod.grips);
   set_obstacles(scene, obstacles_in_reach(scene, settings), result);
   const std::vector<Side> sides = scene.grippers.size() == 1
                                       ? std::vector<Side>{Side::along_load}

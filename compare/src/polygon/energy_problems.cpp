@@ -14,7 +14,7 @@ std::optional<ChainScene> chain_scene(const Scene& scene, const Discretisation& 
   const Gripper& grip = scene.grippers.front();
   const bool end_clamp =
       scene.grippers.size() == 1 && grip.direction && (grip.at == 0 || grip.at == scene.length);
-  if (!end_clamp || discretisation.rod.touches_anything()) return std::nullopt;
+  if (!end_clamp || discretisation.rod.has_obstacles()) return std::nullopt;
   const bool reversed = grip.at != 0;
   const Eigen::Index N = settings.points;
   std::vector<Eigen::Vector3d> forces = {scene.weight_per_length() * scene.length};

@@ -12,7 +12,7 @@ namespace {
 /// Whether all grips, loads and obstacles of a rod lie in the plane z = 0, to the last digit.
 bool lies_in_plane(const Scene& scene, const ForceModelSettings& settings) {
   const auto flat = [](const Eigen::Vector3d& vector) { return vector.z() == 0; };
-  const auto held_flat = [&](const Gripper& gripper) {
+  const auto is_in_plane = [&](const Gripper& gripper) {
     return flat(gripper.position) && (!gripper.direction || flat(*gripper.direction));
   };
   const auto flat_body = [&](const obstacle::Body& body) {
@@ -21,7 +21,7 @@ bool lies_in_plane(const Scene& scene, const ForceModelSettings& settings) {
   };
   const auto in_reach = obstacles_in_reach(scene, settings);
   return flat(scene.gravity) && (!scene.drag || flat(scene.drag->velocity)) &&
-         std::all_of(scene.grippers.begin(), scene.grippers.end(), held_flat) &&
+         std::all_of(scene.grippers.begin(), scene.grippers.end(), is_in_plane) &&
          std::all_of(scene.loads.begin(), scene.loads.end(),
                      [&](const PointLoad& load) { return flat(load.force); }) &&
          std::all_of(scene.distributed_loads.begin(), scene.distributed_loads.end(),
@@ -35,41 +35,41 @@ bool lies_in_plane(const Scene& scene, const ForceModelSettings& settings) {
 
 }  // namespace
 
-bool takes_natural_curvature(const Scene& scene, const ForceModelSettings& settings) {
+bool models_natural_curvature(const Scene& scene, const ForceModelSettings& settings) {
   return scene.naturally_curved() && settings.law == BendingLaw::hooke && scene.planar();
 }
 
-bool takes_twist(const Scene& scene, const ForceModelSettings& settings) {
-  return scene.holds_twist() && settings.law == BendingLaw::hooke && !scene.naturally_bent();
+bool models_twist(const Scene& scene, const ForceModelSettings& settings) {
+  return scene.prescribes_twist() && settings.law == BendingLaw::hooke && !scene.naturally_bent();
 }
 
 std::vector<std::string> neglected_by_polygon(const Scene& scene,
                                               const ForceModelSettings& settings) {
   std::vector<std::string> neglected;
-  if (scene.holds_twist() && !takes_twist(scene, settings)) neglected.emplace_back("twist");
-  if (scene.naturally_curved() && !takes_natural_curvature(scene, settings)) {
+  if (scene.prescribes_twist() && !models_twist(scene, settings)) neglected.emplace_back("twist");
+  if (scene.naturally_curved() && !models_natural_curvature(scene, settings)) {
     neglected.emplace_back("natural curvature");
   }
   return neglected;
 }
 
-Scene as_polygons_take_it(const Scene& scene, const ForceModelSettings& settings) {
-  if (takes_twist(scene, settings)) return scene;
-  const bool curved = takes_natural_curvature(scene, settings);
+Scene without_neglected_properties(const Scene& scene, const ForceModelSettings& settings) {
+  if (models_twist(scene, settings)) return scene;
+  const bool curved = models_natural_curvature(scene, settings);
   return (curved ? scene : scene.without_natural_strain()).without_twist();
 }
 
-PlaneTurn::PlaneTurn(const Eigen::Vector3d& normal, Eigen::Vector3d origin)
+PlaneTransform::PlaneTransform(const Eigen::Vector3d& normal, Eigen::Vector3d origin)
     : turn_(Eigen::Quaterniond::FromTwoVectors(normal, Eigen::Vector3d::UnitZ())),
       origin_(std::move(origin)) {}
 
-Eigen::Vector3d PlaneTurn::flat(const Eigen::Vector3d& vector) const {
+Eigen::Vector3d PlaneTransform::flat(const Eigen::Vector3d& vector) const {
   Eigen::Vector3d result = turn_ * vector;
   result.z() = 0;
   return result;
 }
 
-Scene PlaneTurn::laid(const Scene& scene) const {
+Scene PlaneTransform::transformed(const Scene& scene) const {
   Scene result = scene;
   result.gravity = flat(scene.gravity);
   for (Gripper& gripper : result.grippers) {
@@ -89,22 +89,23 @@ Scene PlaneTurn::laid(const Scene& scene) const {
     obstacle::Body& body = result.obstacles[i].body;
     if (!body.is_half_space()) continue;
     const Eigen::Vector3d normal = flat(scene.obstacles[i].body.normal());
-    body = obstacle::Body::half_space(body.centre(), normal).grown(body.radius());
+    body = obstacle::Body::half_space(body.centre(), normal).enlarged(body.radius());
   }
   return result;
 }
 
-Eigen::Matrix3Xd PlaneTurn::laid_points(const Eigen::Matrix3Xd& points) const {
+Eigen::Matrix3Xd PlaneTransform::transformed_points(const Eigen::Matrix3Xd& points) const {
   Eigen::Matrix3Xd result = turn_ * (points.colwise() - origin_);
   result.row(2).setZero();
   return result;
 }
 
-std::optional<PlaneTurn> turn_into_plane(const Scene& scene, const ForceModelSettings& settings) {
-  if (!takes_natural_curvature(scene, settings) || lies_in_plane(scene, settings)) {
+std::optional<PlaneTransform> plane_transform(const Scene& scene,
+                                              const ForceModelSettings& settings) {
+  if (!models_natural_curvature(scene, settings) || lies_in_plane(scene, settings)) {
     return std::nullopt;
   }
-  return PlaneTurn(scene.plane_normal().value(), scene.grippers.front().position);
+  return PlaneTransform(scene.plane_normal().value(), scene.grippers.front().position);
 }
 
 }  // namespace dlo::compare

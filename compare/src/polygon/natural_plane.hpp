@@ -12,11 +12,11 @@ namespace dlo::compare {
 
 /// Whether a polygon models the rod's intrinsic curvature by joints with rest angles. It does with
 /// the law hooke and in a plane; in space it would need the rod's frame, which points do not have.
-[[nodiscard]] bool takes_natural_curvature(const Scene& scene, const ForceModelSettings& settings);
+[[nodiscard]] bool models_natural_curvature(const Scene& scene, const ForceModelSettings& settings);
 
 /// Whether a polygon models the twist that the scene's clamps hold. It does with the law hooke, for
 /// an intrinsically straight rod.
-[[nodiscard]] bool takes_twist(const Scene& scene, const ForceModelSettings& settings);
+[[nodiscard]] bool models_twist(const Scene& scene, const ForceModelSettings& settings);
 
 /// Returns the properties of the scene that its polygon neglects: "twist", "natural curvature",
 /// both or none.
@@ -24,25 +24,26 @@ namespace dlo::compare {
                                                             const ForceModelSettings& settings);
 
 /// Returns the scene without the properties that its polygon neglects (neglected_by_polygon).
-[[nodiscard]] Scene as_polygons_take_it(const Scene& scene, const ForceModelSettings& settings);
+[[nodiscard]] Scene without_neglected_properties(const Scene& scene,
+                                                 const ForceModelSettings& settings);
 
 /// A rotation and a translation that move a planar scene into the plane z = 0, in which joints with
 /// rest angles are defined.
-class PlaneTurn {
+class PlaneTransform {
  public:
   /// @param normal  normal of the scene's plane, becomes +z
   /// @param origin  a point of the plane [m]
-  PlaneTurn(const Eigen::Vector3d& normal, Eigen::Vector3d origin);
+  PlaneTransform(const Eigen::Vector3d& normal, Eigen::Vector3d origin);
 
   /// Returns the scene moved into the plane z = 0; rounding errors out of the plane are set to
   /// zero.
-  [[nodiscard]] Scene laid(const Scene& scene) const;
-  [[nodiscard]] Eigen::Matrix3Xd laid_points(const Eigen::Matrix3Xd& points) const;
+  [[nodiscard]] Scene transformed(const Scene& scene) const;
+  [[nodiscard]] Eigen::Matrix3Xd transformed_points(const Eigen::Matrix3Xd& points) const;
 
-  [[nodiscard]] Eigen::Matrix3Xd points_back(const Eigen::Matrix3Xd& points) const {
-    return vectors_back(points).colwise() + origin_;
+  [[nodiscard]] Eigen::Matrix3Xd points_to_space(const Eigen::Matrix3Xd& points) const {
+    return vectors_to_space(points).colwise() + origin_;
   }
-  [[nodiscard]] Eigen::Matrix3Xd vectors_back(const Eigen::Matrix3Xd& vectors) const {
+  [[nodiscard]] Eigen::Matrix3Xd vectors_to_space(const Eigen::Matrix3Xd& vectors) const {
     return turn_.transpose() * vectors;
   }
 
@@ -54,7 +55,7 @@ class PlaneTurn {
 };
 
 /// Returns the rotation that a scene needs before it is discretised, std::nullopt if it needs none.
-[[nodiscard]] std::optional<PlaneTurn> turn_into_plane(const Scene& scene,
-                                                       const ForceModelSettings& settings);
+[[nodiscard]] std::optional<PlaneTransform> plane_transform(const Scene& scene,
+                                                            const ForceModelSettings& settings);
 
 }  // namespace dlo::compare

@@ -18,15 +18,15 @@ namespace {
 
 /// Extent of the segment that a gripper holds, on both sides of the gripper's arc length, in
 /// segments.
-struct Reach {
+struct HeldExtent {
   double before = 0;
   double after = 0;
 };
 
-Reach reach(const Scene& scene, const Gripper& gripper, Bookkeeping bookkeeping) {
+HeldExtent held_extent(const Scene& scene, const Gripper& gripper, Bookkeeping bookkeeping) {
   if (!gripper.direction) return {};
   if (bookkeeping == Bookkeeping::consistent) return {.before = 0.5, .after = 0.5};
-  return gripper.at == scene.length ? Reach{.before = 1} : Reach{.after = 1};
+  return gripper.at == scene.length ? HeldExtent{.before = 1} : HeldExtent{.after = 1};
 }
 
 /// An interval of the rod between two grips, or between a grip and a free end.
@@ -55,11 +55,11 @@ std::vector<Gap> gaps_between(const Scene& scene, const std::vector<std::size_t>
   Gap gap;
   for (const std::size_t index : along) {
     const Gripper& gripper = scene.grippers[index];
-    const Reach held = reach(scene, gripper, bookkeeping);
+    const HeldExtent grip_reach = held_extent(scene, gripper, bookkeeping);
     gap.end = gripper.at;
-    gap.reach_end = held.before;
+    gap.reach_end = grip_reach.before;
     if (gripper.at > 0) gaps.push_back(gap);
-    gap = {.begin = gripper.at, .reach_begin = held.after};
+    gap = {.begin = gripper.at, .reach_begin = grip_reach.after};
   }
   gap.end = scene.length;
   if (gap.begin < scene.length) gaps.push_back(gap);
@@ -68,12 +68,12 @@ std::vector<Gap> gaps_between(const Scene& scene, const std::vector<std::size_t>
 
 /// Returns the number of segments inside end grippers, beyond the rod; a fraction with the
 /// consistent bookkeeping.
-double segments_beyond(const Scene& scene, Bookkeeping bookkeeping) {
+double segments_beyond_ends(const Scene& scene, Bookkeeping bookkeeping) {
   double beyond = 0;
   for (const Gripper& gripper : scene.grippers) {
-    const Reach held = reach(scene, gripper, bookkeeping);
-    if (gripper.at == 0) beyond += held.before;
-    if (gripper.at == scene.length) beyond += held.after;
+    const HeldExtent grip_reach = held_extent(scene, gripper, bookkeeping);
+    if (gripper.at == 0) beyond += grip_reach.before;
+    if (gripper.at == scene.length) beyond += grip_reach.after;
   }
   return beyond;
 }
@@ -99,7 +99,7 @@ void require_enough_points(const Scene& scene, const ForceModelSettings& setting
 }
 
 /// Distributes `segments` over the gaps, one at a time, each to the gap whose segments are longest.
-void share_segments(std::vector<Gap>& gaps, Eigen::Index segments, double L) {
+void distribute_segments(std::vector<Gap>& gaps, Eigen::Index segments, double L) {
   const auto longer = [L](const Gap& a, const Gap& b) {
     // If lengths differ only by rounding, the first gap counts as the longest.
     return a.free_length(L) / static_cast<double>(a.segments) * (1 + 1e-9) <
@@ -112,7 +112,7 @@ void share_segments(std::vector<Gap>& gaps, Eigen::Index segments, double L) {
 
 /// Whether grips hold the whole rod taut on a line without forces across it, and taut_line() solves
 /// it.
-bool is_solved_taut(const Scene& scene) {
+bool is_taut_line_case(const Scene& scene) {
   const energy_model::Problem problem = scene_problem(scene);
   if (!energy_model::is_taut_line(problem)) return false;
   try {
@@ -122,7 +122,7 @@ bool is_solved_taut(const Scene& scene) {
   }
 }
 
-force_model::Grip grip_of(const Gripper& gripper, const Layout& layout, Eigen::Index first) {
+force_model::Grip make_grip(const Gripper& gripper, const Layout& layout, Eigen::Index first) {
   force_model::Grip hold;
   hold.first_point = first;
   hold.reference = gripper.position;
@@ -137,22 +137,22 @@ force_model::Grip grip_of(const Gripper& gripper, const Layout& layout, Eigen::I
 }
 
 /// The rod between two neighbouring grips, without the segments that they hold.
-struct Between {
-  double apart = 0;  // distance between the two points [m]
-  double rod = 0;    // sum of the segments' rest lengths [m]
+struct GripInterval {
+  double distance = 0;  // distance between the two points [m]
+  double rod = 0;       // sum of the segments' rest lengths [m]
   Eigen::Index segments = 0;
 
   /// Whether segments of these rest lengths reach from grip to grip: a single segment must have the
   /// length of the gap, within `strain`; several may bend.
-  [[nodiscard]] bool fits(double strain) const {
-    if (apart > rod * (1 + 1e-9)) return false;
-    return segments > 1 || apart >= rod * (1 - strain);
+  [[nodiscard]] bool is_feasible(double strain) const {
+    if (distance > rod * (1 + 1e-9)) return false;
+    return segments > 1 || distance >= rod * (1 - strain);
   }
 };
 
-std::vector<Between> between_grips(const Layout& layout,
-                                   const std::vector<force_model::Grip>& grips) {
-  std::vector<Between> result;
+std::vector<GripInterval> grip_intervals(const Layout& layout,
+                                         const std::vector<force_model::Grip>& grips) {
+  std::vector<GripInterval> result;
   for (std::size_t k = 0; k + 1 < layout.along.size(); ++k) {
     const force_model::Grip& a = grips[layout.along[k]];
     const force_model::Grip& b = grips[layout.along[k + 1]];
@@ -164,20 +164,21 @@ std::vector<Between> between_grips(const Layout& layout,
   return result;
 }
 
-bool grips_fit(const Layout& layout, const std::vector<force_model::Grip>& grips, double strain) {
-  const std::vector<Between> all = between_grips(layout, grips);
+bool are_grips_feasible(const Layout& layout, const std::vector<force_model::Grip>& grips,
+                        double strain) {
+  const std::vector<GripInterval> all = grip_intervals(layout, grips);
   return std::all_of(all.begin(), all.end(),
-                     [strain](const Between& between) { return between.fits(strain); });
+                     [strain](const GripInterval& between) { return between.is_feasible(strain); });
 }
 
 /// Returns the smallest number of points, above that of the settings, with which the held segments
 /// leave enough rod between grips; 0 if none of the next 3000 numbers does.
-int points_that_fit(const Scene& scene, ForceModelSettings settings, double strain) {
+int least_feasible_points(const Scene& scene, ForceModelSettings settings, double strain) {
   constexpr int most_more = 3000;
   const int last = settings.points + most_more;
   for (++settings.points; settings.points <= last; ++settings.points) {
     const Layout layout = lay_out(scene, settings);
-    if (grips_fit(layout, grips_of(scene, layout), strain)) return settings.points;
+    if (are_grips_feasible(layout, grips_of(scene, layout), strain)) return settings.points;
   }
   return 0;
 }
@@ -210,18 +211,18 @@ std::vector<std::size_t> order_along(const Scene& scene) {
     const Gripper& a = scene.grippers[along[i]];
     const Gripper& b = scene.grippers[along[i + 1]];
     const double rod = b.at - a.at;
-    const double apart = (b.position - a.position).norm();
+    const double distance = (b.position - a.position).norm();
     if (!(rod > same_point * scene.length)) {
       throw InputError(fmt::format(
           "{}: gripper.at = {} m: two grippers hold this arc length (allowed: one at each)",
           where(scene, b), b.at));
     }
-    if (apart > rod * (1 + 1e-12)) {
+    if (distance > rod * (1 + 1e-12)) {
       throw InputError(
           fmt::format("{}: gripper.position: {} m from the gripper at = {} m (allowed: rod.stretch "
                       "= true, which "
                       "model exact takes; or no more than the {} m of rod between them)",
-                      where(scene, b), apart, a.at, rod));
+                      where(scene, b), distance, a.at, rod));
     }
   }
   return along;
@@ -230,13 +231,13 @@ std::vector<std::size_t> order_along(const Scene& scene) {
 }  // namespace
 
 void require_slack(const Scene& scene) {
-  if (scene.stretch == Stretch::counted || is_solved_taut(scene)) return;
+  if (scene.stretch == Stretch::counted || is_taut_line_case(scene)) return;
   const std::vector<std::size_t> along = order_along(scene);
   for (std::size_t i = 0; i + 1 < along.size(); ++i) {
     const Gripper& a = scene.grippers[along[i]];
     const Gripper& b = scene.grippers[along[i + 1]];
-    const double apart = (b.position - a.position).norm();
-    if (apart < b.at - a.at) continue;
+    const double distance = (b.position - a.position).norm();
+    if (distance < b.at - a.at) continue;
     const char* const couple =
         scene.has_couples() ? ", and load.torque: a couple that is not on a clamp of a taut rod "
                               "depends on its tension, which is undetermined"
@@ -246,7 +247,7 @@ void require_slack(const Scene& scene) {
         "which model exact takes; less than the {} m of rod between them; or all of a round "
         "straight rod taut on a line, clamps and forces along it and couples on clamps; models "
         "chain and force take a taut rod)",
-        where(scene, b), apart, a.at, couple, b.at - a.at));
+        where(scene, b), distance, a.at, couple, b.at - a.at));
   }
 }
 
@@ -254,13 +255,13 @@ Layout lay_out(const Scene& scene, const ForceModelSettings& settings) {
   Layout layout;
   layout.along = order_along(scene);
   std::vector<Gap> gaps = gaps_between(scene, layout.along, settings.bookkeeping);
-  const double beyond = segments_beyond(scene, settings.bookkeeping);
+  const double beyond = segments_beyond_ends(scene, settings.bookkeeping);
   Eigen::Index clamps = 0;
   for (const Gripper& gripper : scene.grippers) clamps += gripper.direction ? 1 : 0;
   require_enough_points(scene, settings, gaps, beyond, clamps);
   const double L = scene.length / (settings.points - 1 - beyond);
   layout.segment_length = L;
-  share_segments(gaps, settings.points - 1 - clamps, L);
+  distribute_segments(gaps, settings.points - 1 - clamps, L);
 
   layout.rest_lengths.resize(settings.points - 1);
   layout.first_held.resize(scene.grippers.size());
@@ -281,15 +282,16 @@ Layout lay_out(const Scene& scene, const ForceModelSettings& settings) {
     if (gripper.at > 0) add_gap(gaps[next_gap++]);
     layout.first_held[index] = point;
     if (!gripper.direction) continue;
-    const Reach held = reach(scene, gripper, settings.bookkeeping);
-    layout.arc_length.push_back(gripper.at - held.before * L);
+    const HeldExtent grip_reach = held_extent(scene, gripper, settings.bookkeeping);
+    layout.arc_length.push_back(gripper.at - grip_reach.before * L);
     layout.rest_lengths[point++] = L;
   }
   if (next_gap < gaps.size()) add_gap(gaps[next_gap]);
   const Gripper& last = scene.grippers[layout.along.back()];
-  layout.arc_length.push_back(
-      last.at < scene.length ? scene.length
-                             : scene.length + reach(scene, last, settings.bookkeeping).after * L);
+  layout.arc_length.push_back(last.at < scene.length
+                                  ? scene.length
+                                  : scene.length +
+                                        held_extent(scene, last, settings.bookkeeping).after * L);
   if (gaps.size() == 1) {
     // Equal segments are counted from one end, so that no arc length depends on the positions of
     // the grips.
@@ -303,25 +305,25 @@ Layout lay_out(const Scene& scene, const ForceModelSettings& settings) {
 std::vector<force_model::Grip> grips_of(const Scene& scene, const Layout& layout) {
   std::vector<force_model::Grip> grips;
   for (std::size_t i = 0; i < scene.grippers.size(); ++i) {
-    grips.push_back(grip_of(scene.grippers[i], layout, layout.first_held[i]));
+    grips.push_back(make_grip(scene.grippers[i], layout, layout.first_held[i]));
   }
   return grips;
 }
 
-void require_fit(const Scene& scene, const ForceModelSettings& settings, const Layout& layout,
-                 const std::vector<force_model::Grip>& grips) {
+void require_feasible_grips(const Scene& scene, const ForceModelSettings& settings,
+                            const Layout& layout, const std::vector<force_model::Grip>& grips) {
   const double strain = largest_strain(scene, settings);
-  if (grips_fit(layout, grips, strain)) return;
-  const int needed = points_that_fit(scene, settings, strain);
+  if (are_grips_feasible(layout, grips, strain)) return;
+  const int needed = least_feasible_points(scene, settings, strain);
   const std::string allowed =
       needed > 0 ? fmt::format("{} or more", needed) : std::string("more points");
-  for (const Between& between : between_grips(layout, grips)) {
-    if (between.fits(strain)) continue;
+  for (const GripInterval& between : grip_intervals(layout, grips)) {
+    if (between.is_feasible(strain)) continue;
     throw InputError(
         fmt::format("{}: force_model.points = {}: held segments of {:g} m leave {:g} m of rod in "
                     "{} segment{} between points that two grippers hold {:g} m apart (allowed: {})",
                     scene.file, settings.points, layout.segment_length, between.rod,
-                    between.segments, between.segments == 1 ? "" : "s", between.apart, allowed));
+                    between.segments, between.segments == 1 ? "" : "s", between.distance, allowed));
   }
 }
 

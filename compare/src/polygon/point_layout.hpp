@@ -39,8 +39,8 @@ void require_slack(const Scene& scene);
 /// shortened.
 /// @throws InputError with the number of points that suffices.
 /// @param grips  result of grips_of()
-void require_fit(const Scene& scene, const ForceModelSettings& settings, const Layout& layout,
-                 const std::vector<force_model::Grip>& grips);
+void require_feasible_grips(const Scene& scene, const ForceModelSettings& settings,
+                            const Layout& layout, const std::vector<force_model::Grip>& grips);
 
 /// Masses of the points of a scene's polygon, by point [kg].
 struct PointMasses {

@@ -14,7 +14,7 @@
 namespace dlo::compare {
 namespace {
 
-Eigen::Matrix<double, 3, 2> two_across(const Eigen::Vector3d& axis) {
+Eigen::Matrix<double, 3, 2> two_normals(const Eigen::Vector3d& axis) {
   Eigen::Matrix<double, 3, 2> result;
   result.col(0) = axis.unitOrthogonal();
   result.col(1) = axis.cross(result.col(0));
@@ -75,7 +75,7 @@ PolygonResponse::PolygonResponse(const Scene& scene, const Discretisation& discr
     if (grip.targets.cols() < 2) continue;
     tangents_.col(grip.first_point) = (grip.targets.col(1) - grip.targets.col(0)).normalized();
   }
-  for (Eigen::Index i = 0; i < n_; ++i) across_.push_back(two_across(tangents_.col(i)));
+  for (Eigen::Index i = 0; i < n_; ++i) across_.push_back(two_normals(tangents_.col(i)));
   find_forces(rod);
 }
 
@@ -233,14 +233,14 @@ Eigen::Matrix3Xd PolygonResponse::points_along(const Eigen::Vector3d& start,
   return points;
 }
 
-double PolygonResponse::moved_rms(const Eigen::Matrix3Xd& movement) const {
+double PolygonResponse::displacement_rms(const Eigen::Matrix3Xd& movement) const {
   // Points inside end grippers do not belong to the rod, whose ends there do not move.
   const Shape moved = polygon_.shape(rod_points_ + movement);
   return rms(moved.arc_length, moved.points - rod_points_);
 }
 
-PolygonResponse::Answer PolygonResponse::answer_to(const Eigen::Matrix3Xd& f,
-                                                   const Eigen::Matrix3Xd& eta) const {
+PolygonResponse::Response PolygonResponse::response_to(const Eigen::Matrix3Xd& f,
+                                                       const Eigen::Matrix3Xd& eta) const {
   const Eigen::RowVectorXd L = polygon_.rod.rest_lengths.transpose();
   const std::vector<force_model::Grip>& grips = polygon_.rod.grips;
   Eigen::Matrix3Xd steps = eta * L.asDiagonal();
@@ -263,7 +263,7 @@ PolygonResponse::Answer PolygonResponse::answer_to(const Eigen::Matrix3Xd& f,
     const Eigen::Index end = grips[along_[static_cast<std::size_t>(k) + 1]].first_point;
     dn.middleCols(begin, end - begin).colwise() = Eigen::Vector3d(turned.dn.col(k));
   }
-  return {moved_rms(points_along(Eigen::Vector3d::Zero(), steps)), turned.dt, std::move(dn)};
+  return {displacement_rms(points_along(Eigen::Vector3d::Zero(), steps)), turned.dt, std::move(dn)};
 }
 
 StretchResponse PolygonResponse::stretch(double stiffness) const {
@@ -274,9 +274,9 @@ StretchResponse PolygonResponse::stretch(double stiffness) const {
     eta.col(i) = strain * tangents_.col(i);
     f.col(i) = polygon_.rod.rest_lengths[i] * strain * forces_.col(i);
   }
-  const Answer answer = answer_to(f, eta);
-  StretchResponse result{answer.moved_m, std::numeric_limits<double>::quiet_NaN()};
-  if (!std::isfinite(answer.moved_m)) return result;
+  const Response answer = response_to(f, eta);
+  StretchResponse result{answer.displacement_m, std::numeric_limits<double>::quiet_NaN()};
+  if (!std::isfinite(answer.displacement_m)) return result;
   double largest = 0;
   for (Eigen::Index i = 0; i < n_; ++i) {
     const double tension = forces_.col(i).dot(tangents_.col(i));
@@ -297,7 +297,7 @@ double PolygonResponse::shear(double stiffness) const {
     eta.col(i) = (forces_.col(i) - tension * tangents_.col(i)) / stiffness;
     f.col(i) = -polygon_.rod.rest_lengths[i] * tension * eta.col(i);
   }
-  return answer_to(f, eta).moved_m;
+  return response_to(f, eta).displacement_m;
 }
 
 double PolygonResponse::discretisation() const {
@@ -325,7 +325,7 @@ double PolygonResponse::discretisation() const {
   if (!turned.possible) return std::numeric_limits<double>::infinity();
   steps += turned.dt * L.asDiagonal();
   const Eigen::Vector3d start = grips[along_.front()].targets.col(0);
-  return moved_rms(points_along(start, steps) - rod_points_);
+  return displacement_rms(points_along(start, steps) - rod_points_);
 }
 
 double bound_of_response(double response, double length) {

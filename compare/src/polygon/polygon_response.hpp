@@ -23,7 +23,7 @@ inline constexpr int rod_points = 97;
 
 /// Changes of an equilibrium by stretch, to first order.
 struct StretchResponse {
-  double moved_m = 0;  ///< RMS displacement along the rod [m]
+  double displacement_m = 0;  ///< RMS displacement along the rod [m]
   /// Change of the tension by stretch in the segment where the tension (or compression) is largest,
   /// divided by this tension [-]. NaN if the response cannot be computed or if no segment carries
   /// tension.
@@ -79,15 +79,15 @@ class PolygonResponse {
   /// Whether `matrix` is positive definite on the null space of the constraints, by Sylvester's law
   /// of inertia.
   [[nodiscard]] bool is_positive(const Eigen::SparseMatrix<double>& matrix) const;
-  struct Answer {
-    double moved_m;       // infinite: no response
-    Eigen::Matrix3Xd dt;  // change of each segment's tangent
-    Eigen::Matrix3Xd dn;  // change of the force in each segment [N]
+  struct Response {
+    double displacement_m;  // infinite: no response
+    Eigen::Matrix3Xd dt;    // change of each segment's tangent
+    Eigen::Matrix3Xd dn;    // change of the force in each segment [N]
   };
-  [[nodiscard]] Answer answer_to(const Eigen::Matrix3Xd& f, const Eigen::Matrix3Xd& eta) const;
+  [[nodiscard]] Response response_to(const Eigen::Matrix3Xd& f, const Eigen::Matrix3Xd& eta) const;
   [[nodiscard]] Eigen::Matrix3Xd points_along(const Eigen::Vector3d& start,
                                               const Eigen::Matrix3Xd& steps) const;
-  [[nodiscard]] double moved_rms(const Eigen::Matrix3Xd& movement) const;
+  [[nodiscard]] double displacement_rms(const Eigen::Matrix3Xd& movement) const;
 
   const Scene& scene_;
   const Discretisation& polygon_;

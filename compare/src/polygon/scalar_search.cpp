@@ -15,16 +15,16 @@ namespace dlo::compare {
 namespace {
 
 /// Arguments of the callback for GSL, which no exception may cross.
-struct Watched {
+struct GslCallback {
   const Function* function;
   double level = 0;
-  double looked_at = 0;
+  double last_argument = 0;
   std::exception_ptr error = nullptr;
 };
 
 double call_for_gsl(double x, void* data) {
-  Watched& watched = *static_cast<Watched*>(data);
-  watched.looked_at = x;
+  GslCallback& watched = *static_cast<GslCallback*>(data);
+  watched.last_argument = x;
   try {
     if (!watched.error) return (*watched.function)(x)-watched.level;
   } catch (...) {
@@ -56,7 +56,7 @@ Minimum minimum_near(const Function& function, const Scan& scan, double toleranc
   // The first of several equal values is the best, and it may be an end.
   if (!scan.is_bracketed()) return result;
   silence_gsl();
-  Watched watched{&function};
+  GslCallback watched{&function};
   gsl_function gsl{call_for_gsl, &watched};
   const auto minimiser =
       gsl_owned(gsl_min_fminimizer_alloc(gsl_min_fminimizer_brent), gsl_min_fminimizer_free);
@@ -75,7 +75,7 @@ Minimum minimum_near(const Function& function, const Scan& scan, double toleranc
   for (int i = 0; i < 100; ++i) {
     const double before = gsl_min_fminimizer_x_minimum(minimiser.get());
     if (gsl_min_fminimizer_iterate(minimiser.get()) != GSL_SUCCESS) break;
-    const double step = std::abs(watched.looked_at - before);
+    const double step = std::abs(watched.last_argument - before);
     if (was_short && step < tolerance) break;
     was_short = step < short_step && step > least_step * std::abs(before);
     if (gsl_min_test_interval(gsl_min_fminimizer_x_lower(minimiser.get()),
@@ -89,15 +89,15 @@ Minimum minimum_near(const Function& function, const Scan& scan, double toleranc
           gsl_min_fminimizer_f_minimum(minimiser.get())};
 }
 
-double crossing(const Function& function, double inside, double outside, double level,
-                double tolerance) {
+double find_crossing(const Function& function, double inside, double outside, double level,
+                     double tolerance) {
   silence_gsl();
   // Brent's method interpolates, so infinite values are replaced by large ones.
   const Function finite = [&](double x) {
     const double value = function(x);
     return std::isfinite(value) ? value : 1e3 * level + 1e3;
   };
-  Watched watched{&finite, level};
+  GslCallback watched{&finite, level};
   gsl_function gsl{call_for_gsl, &watched};
   const auto solver =
       gsl_owned(gsl_root_fsolver_alloc(gsl_root_fsolver_brent), gsl_root_fsolver_free);

@@ -35,7 +35,7 @@ struct Minimum {
 /// finder.
 /// @param inside  where the function is below `level`
 /// @param outside  where it is above
-[[nodiscard]] double crossing(const Function& function, double inside, double outside, double level,
-                              double tolerance = 1e-5);
+[[nodiscard]] double find_crossing(const Function& function, double inside, double outside,
+                                   double level, double tolerance = 1e-5);
 
 }  // namespace dlo::compare

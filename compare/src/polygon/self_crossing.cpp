@@ -11,7 +11,7 @@ namespace dlo::compare {
 namespace {
 
 /// Smallest distance along the rod between two points that can cross, in diameters.
-constexpr double neighbouring = 3;
+constexpr double least_crossing_distance = 3;
 /// Rounding of a distance, divided by the largest coordinate: axes that cross may be this far
 /// apart.
 constexpr double coordinate_rounding = 1e-12;
@@ -64,7 +64,8 @@ std::optional<SelfCrossing> self_crossing(const Shape& shape, double diameter) {
   if (segments < 3) return std::nullopt;
   const Eigen::VectorXd h = chord_lengths(shape.points);
   const double longest = h.maxCoeff();
-  const double apart = neighbouring * diameter;  // least distance along the rod [m]
+  const double least_separation =
+      least_crossing_distance * diameter;  // least distance along the rod [m]
   const std::vector<double>& s = shape.arc_length;
   const double slack = coordinate_rounding * shape.points.cwiseAbs().maxCoeff();
   double near = std::max(diameter, slack);
@@ -76,9 +77,9 @@ std::optional<SelfCrossing> self_crossing(const Shape& shape, double diameter) {
   std::optional<SelfCrossing> found;
   for (Eigen::Index i = 0; i < segments; ++i) {
     // All segments before this one are too close along the rod.
-    const Eigen::Index far =
-        std::lower_bound(s.begin() + i, s.end(), s[static_cast<std::size_t>(i)] + apart) -
-        s.begin() - 2;
+    const Eigen::Index far = std::lower_bound(s.begin() + i, s.end(),
+                                              s[static_cast<std::size_t>(i)] + least_separation) -
+                             s.begin() - 2;
     for (Eigen::Index j = std::max(i + 2, far); j < segments;) {
       // The distance of the middles changes by no more than the polygon's length between them, so
       // the next segments cannot be nearer to this one than the nearest pair so far.
@@ -89,7 +90,7 @@ std::optional<SelfCrossing> self_crossing(const Shape& shape, double diameter) {
         const SelfCrossing here = crossing_of(shape, i, j);
         // If several pairs have the same distance, the first along the rod counts.
         const bool is_nearer = found ? here.distance < near : here.distance <= near;
-        if (is_nearer && here.second - here.first >= apart) {
+        if (is_nearer && here.second - here.first >= least_separation) {
           found = here;
           near = here.distance;
         }

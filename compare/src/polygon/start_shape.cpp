@@ -13,7 +13,7 @@ constexpr int curve_points = 400;
 constexpr double lean = 1e-6;
 
 /// A grip as the curve uses it, with a direction for pins too.
-struct Knot {
+struct GripPoint {
   double at;
   Eigen::Vector3d position;
   Eigen::Vector3d direction;
@@ -43,8 +43,8 @@ Eigen::Vector3d load_between(const Scene& scene, double begin, double end) {
   return load;
 }
 
-std::vector<Knot> knots_of(const Scene& scene, const std::vector<std::size_t>& along) {
-  std::vector<Knot> knots;
+std::vector<GripPoint> grip_points(const Scene& scene, const std::vector<std::size_t>& along) {
+  std::vector<GripPoint> knots;
   for (std::size_t k = 0; k < along.size(); ++k) {
     const Gripper& gripper = scene.grippers[along[k]];
     Eigen::Vector3d direction = Eigen::Vector3d::Zero();
@@ -66,7 +66,7 @@ std::vector<Knot> knots_of(const Scene& scene, const std::vector<std::size_t>& a
 /// The curve between two knots.
 class Arch {
  public:
-  Arch(const Scene& scene, const Knot& begin, const Knot& end, Side side)
+  Arch(const Scene& scene, const GripPoint& begin, const GripPoint& end, Side side)
       : begin_(begin), end_(end), slope_(end.at - begin.at) {
     const double rod = end.at - begin.at;
     const Eigen::Vector3d chord = end.position - begin.position;
@@ -137,10 +137,10 @@ class Arch {
       number = value;
       return length();
     };
-    number = length_at(0) < rod ? crossing(length_at, 0, most, rod, rounding * most) : 0;
+    number = length_at(0) < rod ? find_crossing(length_at, 0, most, rod, rounding * most) : 0;
   }
 
-  Knot begin_, end_;
+  GripPoint begin_, end_;
   Eigen::Vector3d axis_, up_, lean_;
   double slope_;  // scale of the directions in the cubic [m]
   double height_ = 0;
@@ -149,9 +149,9 @@ class Arch {
 /// Returns the direction of a segment of length L that begins at `from`. A segment that would enter
 /// a body is rotated into the body's surface.
 /// @param last  direction along the surface if the segment points straight into the body
-Eigen::Vector3d turned_along(const obstacle::Body& body, const Eigen::Vector3d& from,
-                             const Eigen::Vector3d& direction, double L,
-                             const Eigen::Vector3d& last) {
+Eigen::Vector3d direction_along_surface(const obstacle::Body& body, const Eigen::Vector3d& from,
+                                        const Eigen::Vector3d& direction, double L,
+                                        const Eigen::Vector3d& last) {
   const obstacle::Gap gap = body.gap(from + L * direction);
   if (gap.value >= 0) return direction;
   const Eigen::Vector3d normal = gap.gradient;
@@ -168,9 +168,9 @@ Eigen::Vector3d turned_along(const obstacle::Body& body, const Eigen::Vector3d& 
 
 Eigen::Matrix3Xd start_shape(const Scene& scene, const std::vector<std::size_t>& along,
                              const std::vector<double>& arc_length, Side side) {
-  const std::vector<Knot> knots = knots_of(scene, along);
+  const std::vector<GripPoint> knots = grip_points(scene, along);
   Eigen::Matrix3Xd points(3, static_cast<Eigen::Index>(arc_length.size()));
-  const auto straight = [&](const Knot& knot, std::size_t i) {
+  const auto straight = [&](const GripPoint& knot, std::size_t i) {
     points.col(static_cast<Eigen::Index>(i)) =
         knot.position + (arc_length[i] - knot.at) * knot.direction;
   };
@@ -191,7 +191,7 @@ Eigen::Matrix3Xd start_shape(const Scene& scene, const std::vector<std::size_t>&
 }
 
 void keep_free_ends_clear(const force_model::Rod& rod, Eigen::Ref<Eigen::Matrix3Xd> points) {
-  if (!rod.touches_anything()) return;
+  if (!rod.has_obstacles()) return;
   std::vector<obstacle::Body> bodies;
   for (const force_model::Wall& wall : rod.walls) {
     bodies.push_back(obstacle::Body::half_space(wall.point, wall.normal));
@@ -204,17 +204,17 @@ void keep_free_ends_clear(const force_model::Rod& rod, Eigen::Ref<Eigen::Matrix3
     last = std::max(last, grip.first_point + grip.targets.cols() - 1);
   }
   const Eigen::Matrix3Xd start = points;
-  const auto walk = [&](Eigen::Index begin, Eigen::Index end, Eigen::Index way) {
+  const auto walk = [&](Eigen::Index begin, Eigen::Index end, Eigen::Index stride) {
     Eigen::Vector3d before = Eigen::Vector3d::Zero();
-    for (Eigen::Index i = begin; i != end; i += way) {
-      const Eigen::Vector3d step = start.col(i + way) - start.col(i);
+    for (Eigen::Index i = begin; i != end; i += stride) {
+      const Eigen::Vector3d step = start.col(i + stride) - start.col(i);
       const double L = step.norm();
       Eigen::Vector3d direction = step / L;
       for (const obstacle::Body& body : bodies) {
-        direction = turned_along(body, points.col(i), direction, L, before);
+        direction = direction_along_surface(body, points.col(i), direction, L, before);
       }
       before = direction;
-      points.col(i + way) = points.col(i) + L * direction;
+      points.col(i + stride) = points.col(i) + L * direction;
     }
   };
   walk(last, points.cols() - 1, 1);

@@ -31,7 +31,7 @@ std::string toml_value(const std::string& value) {
 bool is_z_up(const SceneChoices& choices) { return choices.up == "z"; }
 
 /// Returns an upward vector of this length; a downward one if the length is negative.
-std::string upwards(const SceneChoices& choices, double length) {
+std::string upward_vector(const SceneChoices& choices, double length) {
   const std::string text = fmt::format("{:.4g}", length);
   return is_z_up(choices) ? "[0, 0, " + text + "]" : "[0, " + text + ", 0]";
 }
@@ -56,7 +56,7 @@ using Values = std::map<std::string, std::string>;
 
 Values required_values(const SceneChoices& choices) {
   return {{".name", toml_string(choices.name)},
-          {".gravity", upwards(choices, -9.81)},
+          {".gravity", upward_vector(choices, -9.81)},
           {"rod.length", toml_value(choices.length)},
           {"rod.diameter", toml_value(choices.diameter)},
           {"rod.material",
@@ -84,9 +84,9 @@ Values optional_values(const SceneChoices& choices, const Scene& scene) {
                 {"section.bending_stiffness", number(10 * scene.bending_stiffness())},
                 {"section.mass_per_length", number(2 * scene.mass_per_length())},
                 {"load.at", number(l / 2)},
-                {"load.force", upwards(choices, -0.1 * force)},
-                {"obstacle.point", upwards(choices, 0.7 * lowest - 0.1 * l)},
-                {"obstacle.normal", upwards(choices, 1)},
+                {"load.force", upward_vector(choices, -0.1 * force)},
+                {"obstacle.point", upward_vector(choices, 0.7 * lowest - 0.1 * l)},
+                {"obstacle.normal", upward_vector(choices, 1)},
                 {"obstacle.stiffness", number(1e3 * force / (l * l))},
                 {"obstacle.friction", "0.3"},
                 {"track.obstacle_rate", "\"25 Hz\""},
@@ -104,11 +104,11 @@ Values optional_values(const SceneChoices& choices, const Scene& scene) {
 std::string comment(const std::string& text, std::size_t blanks = 1) {
   constexpr std::size_t width = 98;
   const std::string lines = wrap(text, blanks + 2, width);
-  return "#" + std::string(blanks, ' ') + with_places(lines, {{"\n", "\n#"}}) + "\n";
+  return "#" + std::string(blanks, ' ') + replace_placeholders(lines, {{"\n", "\n#"}}) + "\n";
 }
 
 /// Returns the words of a key, with its units, what is allowed, and its default.
-std::string words_of(const SceneKey& key) {
+std::string key_description(const SceneKey& key) {
   std::vector<std::string> notes;
   for (const std::string& note : {known_units(key.dimension), key.range.text}) {
     if (!note.empty()) notes.push_back(note);
@@ -126,8 +126,9 @@ std::string table_text(const SceneTable& table, const Values& values, const std:
     if (key.words.empty()) continue;
     const auto value = values.find(table.name + "." + key.name);
     const bool given = value != values.end();
-    keys += given ? comment(words_of(key))
-                  : comment(fmt::format("{} = {}: {}", key.name, key.example, words_of(key)), 3);
+    keys +=
+        given ? comment(key_description(key))
+              : comment(fmt::format("{} = {}: {}", key.name, key.example, key_description(key)), 3);
     if (given) keys += fmt::format("{}{} = {}\n", mark, key.name, value->second);
     has_values = has_values || given;
   }

@@ -40,11 +40,12 @@ std::optional<Eigen::Matrix3d> read_directors(StrictTable& table) {
     return quaternion->normalized().toRotationMatrix();
   }
   if (!rows) return std::nullopt;
-  const Eigen::Matrix3d off = *rows * rows->transpose() - Eigen::Matrix3d::Identity();
-  if (!(off.cwiseAbs().maxCoeff() <= rotation_tolerance)) {
+  const Eigen::Matrix3d orthogonality_error =
+      *rows * rows->transpose() - Eigen::Matrix3d::Identity();
+  if (!(orthogonality_error.cwiseAbs().maxCoeff() <= rotation_tolerance)) {
     table.fail("frame", fmt::format("rows d1, d2, d3 are off by {:.2g} from unit length or right "
                                     "angles (allowed: up to {:g})",
-                                    off.cwiseAbs().maxCoeff(), rotation_tolerance));
+                                    orthogonality_error.cwiseAbs().maxCoeff(), rotation_tolerance));
   }
   if (rows->determinant() < 0) table.fail("frame", "is left-handed (allowed: d3 = d1 x d2)");
   return rows->transpose();
@@ -91,7 +92,8 @@ void read_clamp(StrictTable& table, Gripper& gripper) {
 }
 
 /// Checks that a gripper is outside every obstacle.
-void require_clear(const Gripper& gripper, const Scene& scene, const StrictTable& entry) {
+void require_outside_obstacles(const Gripper& gripper, const Scene& scene,
+                               const StrictTable& entry) {
   for (const Obstacle& obstacle : scene.obstacles) {
     const double height = obstacle.body.clearance(gripper.position);
     const double rounding = 1e-12 * scene.length;
@@ -128,12 +130,12 @@ Gripper read_gripper(StrictTable& table, const Scene& scene) {
   }
   gripper.where = table.where();
   table.finish();
-  require_clear(gripper, scene, table);
+  require_outside_obstacles(gripper, scene, table);
   return gripper;
 }
 
 void check_twist(const Scene& scene, const StrictTable& rod) {
-  if (!scene.holds_twist()) return;
+  if (!scene.prescribes_twist()) return;
   if (!scene.torsional_stiffness && !scene.assumes_torsion()) {
     rod.fail("torsional_stiffness",
              fmt::format(
@@ -164,7 +166,7 @@ void check_material_directors(const Scene& scene, const StrictTable& rod,
 }
 
 void check_rolls(const Scene& scene, const std::vector<StrictTable>& entries) {
-  if (!scene.holds_twist()) return;
+  if (!scene.prescribes_twist()) return;
   if (scene.has_material_directors()) (void)scene.first_frame();
   const energy_model::Problem problem = scene_problem(scene);
   for (std::size_t i = 0; i < entries.size(); ++i) {

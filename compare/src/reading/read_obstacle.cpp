@@ -67,7 +67,7 @@ Obstacle read_obstacle(StrictTable& table, const Scene& scene) {
                "missing or \"surface\", which is not at one distance from the axis of a rod with "
                "width and thickness (allowed: touches = \"axis\")");
   }
-  if (!axis) obstacle.body = obstacle.body.grown(scene.diameter / 2);
+  if (!axis) obstacle.body = obstacle.body.enlarged(scene.diameter / 2);
   if (!(obstacle.body.smallest_radius() > 0)) {
     table.fail(axis ? "touches" : "size",
                "a box whose edges are sharp, over which the rod would bend without a radius "

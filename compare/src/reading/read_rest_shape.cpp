@@ -24,7 +24,7 @@ MeasuredShape read_rest_points(StrictTable& rod, const std::string& scene_file) 
   if (!rod.is(key, toml::node_type::array)) {
     const std::string name = rod.text(key);
     const std::string file = file_of_shape(path_beside(name, scene_file));
-    return parse_shape(read_beside(rod, key, file, allowed), name);
+    return parse_shape(read_referenced_file(rod, key, file, allowed), name);
   }
   const Eigen::MatrixXd rows = rod.points(key);
   return shape_of(rows.topRows<3>(), {}, "the points",

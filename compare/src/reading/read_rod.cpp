@@ -15,28 +15,29 @@ namespace {
 /// of the rod no longer changes visibly.
 constexpr double largest_gamma = 1e12;
 /// Distance of adjacent sections that counts as rounding of units, divided by the length [-].
-constexpr double same_place_share = 1e-12;
+constexpr double adjacent_rounding_share = 1e-12;
 
 /// EI about every axis of the cross-section, or about d1 and d2.
-struct GivenBending {
+struct BendingStiffnesses {
   double about_d1;
   std::optional<double> about_d2;
 };
 
-std::optional<GivenBending> read_bending_stiffness(StrictTable& table) {
+std::optional<BendingStiffnesses> read_bending_stiffness(StrictTable& table) {
   constexpr const char* key = "bending_stiffness";
   if (!table.has(key)) return std::nullopt;
-  if (!table.is(key, toml::node_type::array)) return GivenBending{table.number(key), std::nullopt};
+  if (!table.is(key, toml::node_type::array))
+    return BendingStiffnesses{table.number(key), std::nullopt};
   const Eigen::Vector2d pair = table.pair(key);
-  return GivenBending{pair.x(), pair.y()};
+  return BendingStiffnesses{pair.x(), pair.y()};
 }
 
 /// Reads EI of a rod that is given by its EI, or by the joints of a chain; std::nullopt if neither
 /// is given.
-std::optional<GivenBending> read_bending(StrictTable& rod, double length) {
+std::optional<BendingStiffnesses> read_bending(StrictTable& rod, double length) {
   if (!rod.has("joint_stiffness")) return read_bending_stiffness(rod);
   const Range spacing = Range::between(1e-6 * length, length, " m");
-  return GivenBending{
+  return BendingStiffnesses{
       rod.number("joint_stiffness") * rod.number("joint_spacing", Dimension::length, spacing),
       std::nullopt};
 }
@@ -52,7 +53,7 @@ void read_cross_section(StrictTable& rod, Scene& scene) {
 
 /// Reads bending stiffness and mass: given values, or material and section.
 void read_stiffness(StrictTable& rod, const std::vector<Material>& known_materials, Scene& scene) {
-  if (const std::optional<GivenBending> given = read_bending(rod, scene.length)) {
+  if (const std::optional<BendingStiffnesses> given = read_bending(rod, scene.length)) {
     scene.given_bending_stiffness = given->about_d1;
     scene.given_bending_stiffness_2 = given->about_d2;
   }
@@ -119,8 +120,8 @@ Section read_section(StrictTable& table, const Scene& scene) {
     table.fail("to", fmt::format("not behind from = {:g} m (allowed: more, up to {:g} m)",
                                  section.from, scene.length));
   }
-  const GivenBending bending = read_bending_stiffness(table).value_or(
-      GivenBending{scene.bending_stiffness(), scene.bending_stiffness_2()});
+  const BendingStiffnesses bending = read_bending_stiffness(table).value_or(
+      BendingStiffnesses{scene.bending_stiffness(), scene.bending_stiffness_2()});
   section.bending_stiffness = bending.about_d1;
   section.bending_stiffness_2 = bending.about_d2;
   section.mass_per_length = scene.mass_per_length();
@@ -150,7 +151,7 @@ void read_sections(std::vector<StrictTable>& tables, Scene& scene) {
   for (const std::size_t i : along) {
     if (!scene.sections.empty()) {
       const double before = scene.sections.back().to;
-      if (std::abs(sections[i].from - before) <= same_place_share * scene.length) {
+      if (std::abs(sections[i].from - before) <= adjacent_rounding_share * scene.length) {
         sections[i].from = before;
       }
       if (sections[i].from < before) {

@@ -49,7 +49,7 @@ std::shared_ptr<const MarkerMotion> read_start(StrictTable& rates, const Scene& 
       "(allowed: a file of points in m beside the scene, as CSV with the columns x,y,z and perhaps "
       "s, or a recording with the columns time,s,x,y,z)";
   const std::string text =
-      read_beside(rates, "start", file_of_shape(path_beside(*name, scene.file)), allowed);
+      read_referenced_file(rates, "start", file_of_shape(path_beside(*name, scene.file)), allowed);
   MarkerMotion start{.file = *name, .positions = {}};
   try {
     if (has_marker_columns(text, *name)) {
@@ -81,7 +81,7 @@ void read_track(StrictTable& rates, Scene& scene) {
 Scene read_scene(const toml::table& root, const std::string& file,
                  const std::vector<Material>& known_materials) {
   StrictTable table(root, "", file);
-  table.follow("");
+  table.use_rows_of("");
   Scene scene;
   scene.file = file;
   if (!table.read("name", scene.name)) scene.name = valid_utf8(file);

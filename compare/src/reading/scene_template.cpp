@@ -27,7 +27,7 @@ namespace {
 /// Calls `place` with a field's value in the type that it would have in a file: integer, number,
 /// text or array.
 template <typename Place>
-void place_value(const SceneField& field, const std::string& file, const Place& place) {
+void pass_value(const SceneField& field, const std::string& file, const Place& place) {
   const std::string& text = field.value.text();
   if (const auto integer = as_number<std::int64_t>(text)) return place(*integer);
   if (const auto number = as_number<double>(text)) return place(*number);
@@ -80,12 +80,12 @@ class Overrider {
     }
     if (rest.empty()) refuse(field.field, "a part of the path is empty");
     if (toml::table* table = parent->as_table()) {
-      place_value(field, file_, [&](const auto& value) { table->insert_or_assign(rest, value); });
+      pass_value(field, file_, [&](const auto& value) { table->insert_or_assign(rest, value); });
       return;
     }
     toml::array& array = *parent->as_array();
     const std::size_t index = element(array, rest, field.field);
-    place_value(field, file_, [&](const auto& value) {
+    pass_value(field, file_, [&](const auto& value) {
       array.insert(array.erase(array.cbegin() + static_cast<std::ptrdiff_t>(index)), value);
     });
   }
@@ -124,7 +124,7 @@ class Overrider {
     if (toml::table* table = parent.as_table()) {
       if (step.empty()) refuse(path, "a part of the path is empty");
       if (!table->contains(step)) table->insert(step, toml::table());
-      if (&parent == root_.get("rod") && step == "material") spell_out_material(*table);
+      if (&parent == root_.get("rod") && step == "material") expand_material(*table);
       child = table->get(step);
     } else {
       toml::array& array = *parent.as_array();
@@ -136,7 +136,7 @@ class Overrider {
     return *child;
   }
 
-  void spell_out_material(toml::table& rod) const {
+  void expand_material(toml::table& rod) const {
     const auto name = rod["material"].value_exact<std::string>();
     if (!name) return;
     for (const Material& material : materials_) {

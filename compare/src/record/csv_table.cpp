@@ -98,11 +98,11 @@ std::string value_text(const Json& value, const KeyName& key, double scale) {
 }
 
 /// Whether a value has a text of one line: it contains no object, and no long list.
-bool fits_in_a_line(const Json& value) {
+bool fits_on_one_line(const Json& value) {
   constexpr std::size_t most_numbers = 9;
   if (!value.is_array()) return !value.is_object() && !value.is_null();
   return !value.empty() && value.size() <= most_numbers && value.flatten().size() <= most_numbers &&
-         std::ranges::all_of(value, fits_in_a_line);
+         std::ranges::all_of(value, fits_on_one_line);
 }
 
 bool is_list_of_objects(const Json& value) {
@@ -114,7 +114,7 @@ std::string all_columns(const Json& rows) {
   std::string columns;
   std::set<std::string> known;
   const auto add = [&](const std::string& name, const std::string& path, const Json& value) {
-    if (fits_in_a_line(value) && known.insert(path).second) {
+    if (fits_on_one_line(value) && known.insert(path).second) {
       append(columns, "{}{}={}", columns.empty() ? "" : ",", name, path);
     }
   };
@@ -134,7 +134,7 @@ void add_values(std::string& out, const Json& object, const std::string& indent,
                 const Magnitudes& large, const std::string& unit = {}) {
   std::size_t width = 0;
   for (const auto& [key, value] : object.items()) {
-    if (fits_in_a_line(value)) width = std::max(width, name_of_key(key).words.size());
+    if (fits_on_one_line(value)) width = std::max(width, name_of_key(key).words.size());
   }
   for (const auto& [key, value] : object.items()) {
     KeyName name = name_of_key(key);
@@ -147,7 +147,7 @@ void add_values(std::string& out, const Json& object, const std::string& indent,
     }
     if (name.unit.empty() && value.is_number_float()) name.unit = unit;
     const bool lines = value.is_array() && !value.empty() && value.front().is_string();
-    if (!lines && !fits_in_a_line(value)) continue;
+    if (!lines && !fits_on_one_line(value)) continue;
     for (const Json& line : lines ? value : Json::array({value})) {
       const std::string text = value_text(line, name, large.of(name.unit));
       if (text.empty()) continue;

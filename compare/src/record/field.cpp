@@ -26,7 +26,7 @@ double Magnitudes::of(std::string_view unit) const {
 Magnitudes magnitudes(const Scene& scene) {
   const double l = scene.length;
   const double force = scene.softer_bending_stiffness() / (l * l) +
-                       scene.weight_between(0, l).norm() + scene.total_of_loads();
+                       scene.weight_between(0, l).norm() + scene.total_load_magnitude();
   return {.length = l, .force = force, .torque = force * l, .energy = force * l};
 }
 

@@ -33,7 +33,7 @@ double turns(const SolvedShape& shape, double Linking::*of_part) {
   return sum;
 }
 
-bool holds_twist(const Scene& scene) { return scene.holds_twist(); }
+bool prescribes_twist(const Scene& scene) { return scene.prescribes_twist(); }
 
 }  // namespace
 
@@ -73,7 +73,7 @@ std::span<const Field<SolvedShape>> solution_fields() {
        "Energies of the stable equilibria that the search found, lowest first; none: no search",
        [](S s) { return s.solution.stable_energies; }, document},
       {"passing_starts", "", "Number of initial guesses that pass obstacles on another side",
-       [](S s) -> long { return s.solution.passing_starts; }, document},
+       [](S s) -> long { return s.solution.other_side_starts; }, document},
       {"stable", "", "Whether it is stable, as far as that is known",
        [](S s) { return is_stable(s.solution); }, in_python},
       {"error_estimate", "m", "Estimated largest error of the points; none: not known",
@@ -85,7 +85,7 @@ std::span<const Field<SolvedShape>> solution_fields() {
        "is too small to matter",
        [](S s) { return s.solution.stretch.strain; }, document},
       {"stretch_moves", "m", "RMS displacement of the points by stretch, to first order",
-       [](S s) { return s.solution.stretch.moved_m; }, document},
+       [](S s) { return s.solution.stretch.displacement_m; }, document},
       {"stretch_tension_change", "", "Relative change of the largest tension by stretch",
        [](S s) { return s.solution.stretch.tension; }, document},
       {"stretch_decision", "",
@@ -100,11 +100,11 @@ std::span<const Field<SolvedShape>> shape_numbers() {
   static const Field<SolvedShape> fields[] = {
       {"link", "turns", "Turns of the rod's frames: twist and writhe",
        [](S s) { return turns(s, &Linking::twist) + turns(s, &Linking::writhe); }, everywhere, "",
-       holds_twist},
+       prescribes_twist},
       {"twist", "turns", "Twist of the rod about its axis, a part of the link",
-       [](S s) { return turns(s, &Linking::twist); }, everywhere, "", holds_twist},
+       [](S s) { return turns(s, &Linking::twist); }, everywhere, "", prescribes_twist},
       {"writhe", "turns", "Writhe of the axis, a part of the link",
-       [](S s) { return turns(s, &Linking::writhe); }, everywhere, "", holds_twist}};
+       [](S s) { return turns(s, &Linking::writhe); }, everywhere, "", prescribes_twist}};
   return fields;
 }
 

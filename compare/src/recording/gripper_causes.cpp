@@ -55,11 +55,11 @@ Eigen::MatrixX3d sensitivity(const Scene& scene, const TrackOptions& options,
 MotionCause constant_cause(std::size_t gripper, const Eigen::MatrixX3d& design,
                            const Eigen::VectorXd& residuals) {
   const Eigen::Vector3d by = design.colPivHouseholderQr().solve(residuals);
-  const double left = (residuals - design * by).norm();
+  const double residual_norm = (residuals - design * by).norm();
   return {MotionCause::Kind::gripper,
           fmt::format("gripper {} is displaced by [{:.3g}, {:.3g}, {:.3g}] mm", gripper + 1,
                       by.x() * 1e3, by.y() * 1e3, by.z() * 1e3),
-          left / std::sqrt(static_cast<double>(residuals.size()) / 3)};
+          residual_norm / std::sqrt(static_cast<double>(residuals.size()) / 3)};
 }
 
 /// Returns the cause that a gripper has another displacement in each frame; std::nullopt if frames
@@ -67,7 +67,7 @@ MotionCause constant_cause(std::size_t gripper, const Eigen::MatrixX3d& design,
 std::optional<MotionCause> path_cause(std::size_t gripper, const Eigen::MatrixX3d& design,
                                       const Eigen::VectorXd& residuals,
                                       const MarkerMotion& recorded) {
-  double left = 0;
+  double squares = 0;
   double moved = 0;
   Eigen::Index frames = 0;
   for (std::size_t begin = 0; begin < recorded.positions.size();) {
@@ -81,7 +81,7 @@ std::optional<MotionCause> path_cause(std::size_t gripper, const Eigen::MatrixX3
     const Eigen::MatrixX3d of_frame = design.middleRows(first, rows);
     const Eigen::VectorXd there = residuals.segment(first, rows);
     const Eigen::Vector3d by = of_frame.colPivHouseholderQr().solve(there);
-    left += (there - of_frame * by).squaredNorm();
+    squares += (there - of_frame * by).squaredNorm();
     moved += by.squaredNorm();
     ++frames;
     begin = end;
@@ -91,7 +91,7 @@ std::optional<MotionCause> path_cause(std::size_t gripper, const Eigen::MatrixX3
   return MotionCause{MotionCause::Kind::gripper_path,
                      fmt::format("gripper {} has another path, {:.3g} mm away (RMS)", gripper + 1,
                                  std::sqrt(moved / static_cast<double>(frames)) * 1e3),
-                     std::sqrt(3 * left / static_cast<double>(freedom))};
+                     std::sqrt(3 * squares / static_cast<double>(freedom))};
 }
 
 }  // namespace

@@ -37,13 +37,13 @@ constexpr int fewest_frames = 4;  // as many as a cubic needs
 /// own rate.
 constexpr double frames_per_recorded = 4;
 /// Number of frames up to which the scene's own frame rate is used.
-constexpr double usual_frames = 2000;
+constexpr double default_frame_count = 2000;
 
 /// The rod by both models, as far as they exist.
 struct Models {
   TrackOptions options;
   std::optional<ModelMotion> at_rest, with_inertia;
-  std::string no_inertia;  // why there is no rod with inertia
+  std::string missing_inertia_reason;  // why there is no rod with inertia
 
   [[nodiscard]] const std::optional<ModelMotion>& of(MotionModel model) const {
     return model == MotionModel::at_rest ? at_rest : with_inertia;
@@ -62,12 +62,12 @@ TrackOptions track_options(const Scene& scene, const RecordedTimes& times,
   const double to = times.last + lag_range_share * (times.last - times.first);
   const double rate = request.frame_rate.value_or(
       std::max(frames_per_recorded * (times.count - 1) / (times.last - times.first),
-               std::min(scene.track.frames, usual_frames / (to - from))));
+               std::min(scene.track.frames, default_frame_count / (to - from))));
   const double frames = std::max<double>(fewest_frames, std::ceil((to - from) * rate));
   TrackOptions options{.from = from,
                        .to = to,
                        .rates = scene.track,
-                       .force = ForceBeside::absent,
+                       .force = ForceModelRun::absent,
                        .samples = model_samples,
                        .solve = request.solve};
   options.rates.frames = frames / (to - from);
@@ -134,12 +134,12 @@ void add_inertia(const Scene& scene, const MarkerMotion& recorded,
         scene, options, recorded.positions.back().time);
     if (models.with_inertia) return;
     const std::size_t reached = run.moved.frames.size();
-    models.no_inertia = stop_text(reached < times.size()
-                                      ? std::optional(TrackStop{times[reached], run.why_stopped()})
-                                      : std::nullopt);
+    models.missing_inertia_reason = stop_text(
+        reached < times.size() ? std::optional(TrackStop{times[reached], run.stop_reason()})
+                               : std::nullopt);
   } catch (const ResultError& error) {
     if (request.model == MotionModel::with_inertia) throw;
-    models.no_inertia = error.what();
+    models.missing_inertia_reason = error.what();
   }
 }
 
@@ -153,9 +153,10 @@ Models run_models(const Scene& scene, const MarkerMotion& recorded,
       add_at_rest(scene, times.last, request, progress, models);
   add_inertia(scene, recorded, request, models);
   if (!models.of(request.model)) {
-    throw ConvergenceError(fmt::format(
-        "{}: the rod {}", scene.file,
-        request.model == MotionModel::at_rest ? stop_text(stopped) : models.no_inertia));
+    throw ConvergenceError(fmt::format("{}: the rod {}", scene.file,
+                                       request.model == MotionModel::at_rest
+                                           ? stop_text(stopped)
+                                           : models.missing_inertia_reason));
   }
   return models;
 }
@@ -166,7 +167,7 @@ class CauseSearch {
  public:
   CauseSearch(const MotionCheck& check, const Models& models, const MarkerMotion& recorded)
       : check_(check), models_(models), recorded_(recorded), least_(check.errors.rms_m) {
-    const std::optional<TimeSpan> motion = motion_of(check.scene);
+    const std::optional<TimeSpan> motion = motion_time_span(check.scene);
     // A rod that rests before the first pose has rested before; the past of a moving rod is not
     // known.
     if (motion && motion->begin < *models.options.from) earliest_ = *models.options.from;
@@ -207,14 +208,15 @@ class CauseSearch {
     return fmt::format("the whole recording is displaced by [{:.3g}, {:.3g}, {:.3g}] mm",
                        shift.offset.x() * 1e3, shift.offset.y() * 1e3, shift.offset.z() * 1e3);
   }
-  void add(MotionCause::Kind kind, std::string words, double left) {
-    const double may_leave = kind == MotionCause::Kind::gripper_path ? cause_limits::path_left
-                                                                     : cause_limits::recording_left;
+  void add(MotionCause::Kind kind, std::string words, double residual_rms) {
+    const double largest_share = kind == MotionCause::Kind::gripper_path
+                                     ? cause_limits::path_left
+                                     : cause_limits::recording_left;
     // A deviation that counts as zero needs no cause.
     if (!(least_ > cause_limits::no_recording_error * check_.scene.length)) return;
-    if (!(left <= may_leave * least_)) return;
-    least_ = left;
-    causes_.push_back({kind, std::move(words), left});
+    if (!(residual_rms <= largest_share * least_)) return;
+    least_ = residual_rms;
+    causes_.push_back({kind, std::move(words), residual_rms});
   }
   /// Adds displaced grippers, computed from equilibrium shapes. A rod with inertia follows these if
   /// the path is slow.
@@ -314,7 +316,7 @@ MotionCheck check_motion(const Scene& scene, const MarkerMotion& recorded,
                     .begin = *models.options.from,
                     .frame_rate = models.options.rates.frames,
                     .points = recorded.positions.size(),
-                    .no_inertia = models.no_inertia,
+                    .missing_inertia_reason = models.missing_inertia_reason,
                     .tolerance = request.tolerance.value_or(default_tolerance(scene.length))};
   const auto residuals = [&](MotionModel model) {
     return motion_residuals(recorded, *models.of(model));

@@ -99,9 +99,10 @@ struct MotionCheck {
   std::vector<FrameError> frames_without_lag;  ///< where the rod is known; empty: no lag
   FrameShapes worst_shapes;                    ///< shapes of the frame with the largest RMS
   double at_rest_rms_m = 0;  ///< RMS distance from the rod at rest [m]; NaN: there is none
-  /// RMS distance from the rod with inertia [m]; NaN: there is none, and no_inertia states why.
+  /// RMS distance from the rod with inertia [m]; NaN: there is none, and missing_inertia_reason
+  /// states why.
   double with_inertia_rms_m = std::numeric_limits<double>::quiet_NaN();
-  std::string no_inertia;
+  std::string missing_inertia_reason;
   std::optional<MotionModel> nearer;  ///< the model that is clearly nearer than the other one
   std::vector<MotionCause> causes;    ///< the best first
   ShapeTolerance tolerance;

@@ -19,10 +19,10 @@ namespace {
 
 /// Movement of the rod, divided by its length, that counts as zero: ten times the error of a step
 /// of the simulation.
-constexpr double no_movement = 1e-6;
+constexpr double negligible_movement = 1e-6;
 /// Half the logarithm of the ratio of an interval's ends above which a number is not identified: a
 /// factor of ten to each side.
-constexpr double widest_half = 2.3;
+constexpr double largest_half_interval = 2.3;
 
 /// Bounds of the first window [s]. The window is a natural period, in which vibrations cannot be a
 /// whole period late.
@@ -35,8 +35,8 @@ constexpr int most_last_steps = 24;
 /// Returns the ratio of the variance of a mean of the residuals to that of independent ones: 1 + 2
 /// (rho_1 + rho_2 + ..) up to the first autocorrelation in time that is not positive, of all
 /// markers together.
-double correlated_share(const std::vector<MarkerMotion>& recordings,
-                        const Eigen::VectorXd& residuals) {
+double variance_inflation(const std::vector<MarkerMotion>& recordings,
+                          const Eigen::VectorXd& residuals) {
   std::map<std::pair<std::size_t, double>, std::vector<Eigen::Vector3d>> series;
   Eigen::Index row = 0;
   std::size_t longest = 0;
@@ -69,9 +69,9 @@ double correlated_share(const std::vector<MarkerMotion>& recordings,
 /// @throws InputError
 void require_movement(const Scene& scene, const MotionMisfit& misfit,
                       const std::vector<MarkerMotion>& recordings) {
-  if (misfit.movement() > no_movement * scene.length) return;
+  if (misfit.movement() > negligible_movement * scene.length) return;
   const MarkerMotion& recorded = recordings.front();
-  const std::optional<TimeSpan> motion = motion_of(scene);
+  const std::optional<TimeSpan> motion = motion_time_span(scene);
   const std::string when = motion ? fmt::format("{} moves it from {:g} to {:g} s", scene.file,
                                                 motion->begin, motion->end)
                                   : scene.file + " does not move it";
@@ -83,7 +83,7 @@ void require_movement(const Scene& scene, const MotionMisfit& misfit,
 }
 
 /// Returns the parameters with the best of a few stiffnesses.
-Eigen::VectorXd with_nearest_stiffness(MotionMisfit& misfit, const Eigen::VectorXd& start) {
+Eigen::VectorXd with_best_stiffness(MotionMisfit& misfit, const Eigen::VectorXd& start) {
   constexpr double finest = 0.35;  // step of the logarithm
   constexpr int most = 6;
   Eigen::VectorXd best;
@@ -100,7 +100,7 @@ Eigen::VectorXd with_nearest_stiffness(MotionMisfit& misfit, const Eigen::Vector
   return best;
 }
 
-/// Returns the covariance of all parameters. @param share  correlated_share() of the residuals
+/// Returns the covariance of all parameters. @param share  variance_inflation() of the residuals
 Eigen::MatrixXd covariance(const MotionMisfit& misfit, const LeastSquares& nearest, double share) {
   Eigen::MatrixXd normal =
       nearest.derivatives.transpose() * nearest.derivatives / (share * nearest.variance);
@@ -122,7 +122,8 @@ void add_numbers(const Scene& scene, const MotionMisfit& misfit, const LeastSqua
     const auto k = static_cast<Eigen::Index>(i);
     const double half = quantile * std::sqrt(covariances(k, k));
     const double value = misfit.value(i, nearest.parameters[k]);
-    MotionNumber number{value, value * std::exp(-half), value * std::exp(half), half < widest_half};
+    MotionNumber number{value, value * std::exp(-half), value * std::exp(half),
+                        half < largest_half_interval};
     if (!number.identified && misfit.is_damping(k)) {
       // From zero to a limit by the curvature in the damping itself, without the prior of its
       // logarithm.
@@ -207,15 +208,15 @@ MotionFit fit_motion(const Scene& scene, const std::vector<MarkerMotion>& record
   const Eigen::VectorXd zero = Eigen::VectorXd::Zero(misfit.parameters());
   constexpr int start_steps = 6;
   const Eigen::VectorXd as_given =
-      misfit.physical() < misfit.parameters()
-          ? least_squares(misfit, zero, start_steps, misfit.physical()).parameters
+      misfit.physical_parameters() < misfit.parameters()
+          ? least_squares(misfit, zero, start_steps, misfit.physical_parameters()).parameters
           : zero;
   misfit.restrict_to(misfit.duration());
   const Eigen::VectorXd given = misfit.residuals(as_given);
   if (misfit.stopped().empty()) require_movement(scene, misfit, recordings);
   result.given_rms = rms_of(given.reshaped(3, given.size() / 3));
   misfit.restrict_to(window);
-  Eigen::VectorXd start = with_nearest_stiffness(misfit, zero);
+  Eigen::VectorXd start = with_best_stiffness(misfit, zero);
   LeastSquares nearest;
   constexpr double longer = 4;
   for (double seconds = window;; seconds *= longer) {
@@ -226,7 +227,7 @@ MotionFit fit_motion(const Scene& scene, const std::vector<MarkerMotion>& record
     if (all) break;
   }
   add_errors(recordings, nearest.residuals, scene, misfit, result);
-  add_numbers(scene, misfit, nearest, correlated_share(recordings, nearest.residuals), result);
+  add_numbers(scene, misfit, nearest, variance_inflation(recordings, nearest.residuals), result);
   result.not_identified = not_identified(misfit, nearest, result);
   result.damping = misfit.damping(nearest.parameters);
   result.terms = misfit.terms();

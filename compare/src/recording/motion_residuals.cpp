@@ -19,15 +19,15 @@ namespace dlo::compare {
 namespace {
 
 /// Lagrange's weights of four neighbours among values at 0, 1, .. count - 1.
-struct Neighbours {
+struct LagrangeWeights {
   Eigen::Index first = 0;
   std::array<double, 4> weights{};
 };
 
-Neighbours neighbours(double at, Eigen::Index count) {
+LagrangeWeights neighbours(double at, Eigen::Index count) {
   const auto last = static_cast<double>(count - 1);
   const double x = std::clamp(at, 0.0, last);
-  Neighbours result;
+  LagrangeWeights result;
   result.first =
       std::clamp<Eigen::Index>(static_cast<Eigen::Index>(std::floor(x)) - 1, 0, count - 4);
   const double t = x - static_cast<double>(result.first);
@@ -53,7 +53,7 @@ std::vector<MarkerPosition> thinned(const std::vector<MarkerPosition>& positions
   return result;
 }
 
-MotionShift shift_of(const Eigen::Matrix3Xd& residuals, double lag, Displacement displacement) {
+MotionShift make_shift(const Eigen::Matrix3Xd& residuals, double lag, Displacement displacement) {
   MotionShift result{.lag = lag};
   if (displacement == Displacement::constant) result.offset = residuals.rowwise().mean();
   result.rms_m = rms_of(residuals.colwise() - result.offset);
@@ -86,9 +86,9 @@ ModelMotion::ModelMotion(double begin, double end, double length,
 Eigen::Vector3d ModelMotion::at(double time, double arc_length) const {
   const auto count = static_cast<Eigen::Index>(frames_.size());
   const Eigen::Index points = frames_.front().cols();
-  const Neighbours in_time =
+  const LagrangeWeights in_time =
       neighbours((time - begin_) / (end_ - begin_) * static_cast<double>(count - 1), count);
-  const Neighbours along =
+  const LagrangeWeights along =
       neighbours(arc_length / length_ * static_cast<double>(points - 1), points);
   Eigen::Vector3d result = Eigen::Vector3d::Zero();
   for (Eigen::Index i = 0; i < 4; ++i) {
@@ -122,7 +122,7 @@ std::string lag_words(const MotionShift& shift) {
 }
 
 MotionShift best_offset(const MarkerMotion& recorded, const ModelMotion& model) {
-  return shift_of(motion_residuals(recorded, model), 0, Displacement::constant);
+  return make_shift(motion_residuals(recorded, model), 0, Displacement::constant);
 }
 
 std::optional<MotionShift> best_lag(const MarkerMotion& recorded, const ModelMotion& model,
@@ -133,16 +133,16 @@ std::optional<MotionShift> best_lag(const MarkerMotion& recorded, const ModelMot
   for (const MarkerPosition& at : thinned(recorded.positions)) {
     if (at.time - range >= earliest) usable.positions.push_back(at);
   }
-  constexpr std::size_t fewest = 8;
+  constexpr std::size_t least_count = 8;
   const double low = std::max(-range, last - model.end());
-  if (usable.positions.size() < fewest || !(range > 0) || !(low < 0)) return std::nullopt;
-  const Function left = [&](double lag) {
-    return shift_of(motion_residuals(usable, model, lag), lag, displacement).rms_m;
+  if (usable.positions.size() < least_count || !(range > 0) || !(low < 0)) return std::nullopt;
+  const Function residual = [&](double lag) {
+    return make_shift(motion_residuals(usable, model, lag), lag, displacement).rms_m;
   };
-  const Scan seen = scan(left, low, range, lag_steps);
-  if (!seen.is_bracketed()) return std::nullopt;
-  const double lag = minimum_near(left, seen, 1e-6 * range).x;
-  return shift_of(motion_residuals(usable, model, lag), lag, displacement);
+  const Scan scanned = scan(residual, low, range, lag_steps);
+  if (!scanned.is_bracketed()) return std::nullopt;
+  const double lag = minimum_near(residual, scanned, 1e-6 * range).x;
+  return make_shift(motion_residuals(usable, model, lag), lag, displacement);
 }
 
 Eigen::Matrix3Xd motion_residuals(const MarkerMotion& recorded, const ModelMotion& model,

@@ -51,13 +51,13 @@ class Hinges {
         stiffness_(scene.bending_stiffness()),
         h_(scene.length / static_cast<double>(segments)),
         mass_(Eigen::VectorXd::Zero(segments + 1)),
-        dead_(Eigen::Matrix3Xd::Zero(3, segments + 1)),
+        dead_loads_(Eigen::Matrix3Xd::Zero(3, segments + 1)),
         points_(3, segments + 1),
         force_(3, segments + 1) {
     const double density = scene.mass_per_length();
     for (Eigen::Index i = 0; i <= segments; ++i) {
       mass_(i) = density * h_ * (i == 0 || i == segments ? 0.5 : 1.0);
-      dead_.col(i) = mass_(i) * scene.gravity;
+      dead_loads_.col(i) = mass_(i) * scene.gravity;
     }
     for (const PointLoad& load : scene.loads) {
       const double x = load.at / h_;
@@ -65,8 +65,8 @@ class Hinges {
       const double share = x - static_cast<double>(i);
       mass_(i) += (1 - share) * load.mass;
       mass_(i + 1) += share * load.mass;
-      dead_.col(i) += (1 - share) * load.force;
-      dead_.col(i + 1) += share * load.force;
+      dead_loads_.col(i) += (1 - share) * load.force;
+      dead_loads_.col(i + 1) += share * load.force;
     }
     std::vector<double> middles(static_cast<std::size_t>(segments));
     for (std::size_t i = 0; i < middles.size(); ++i) {
@@ -89,21 +89,21 @@ class Hinges {
         points_.rightCols(mass_.size() - 1) - points_.leftCols(mass_.size() - 1);
     add_forces(along / h_);
     // The first step, from rest, has half the displacement of the others.
-    const double squared = time * time * (begins_ ? 0.5 : 1.0);
-    Eigen::Matrix3Xd next = begins_ ? points_ : Eigen::Matrix3Xd(2 * points_ - before_);
+    const double squared = time * time * (is_first_step_ ? 0.5 : 1.0);
+    Eigen::Matrix3Xd next = is_first_step_ ? points_ : Eigen::Matrix3Xd(2 * points_ - before_);
     for (Eigen::Index i = 1; i < next.cols(); ++i)
       next.col(i) += squared / mass_(i) * force_.col(i);
-    if (!keep_lengths(along, squared, next)) return false;
+    if (!satisfy_length_constraints(along, squared, next)) return false;
     before_.swap(points_);
     points_.swap(next);
-    begins_ = false;
+    is_first_step_ = false;
     return true;
   }
 
  private:
   /// Sums the forces of weight, loads and springs. @param units  directions of the segments
   void add_forces(const Eigen::Matrix3Xd& units) {
-    force_ = dead_;
+    force_ = dead_loads_;
     if (clamp_) add_spring(*clamp_, units.col(0), 2 * stiffness_ / h_, 0);
     for (Eigen::Index i = 1; i < units.cols(); ++i) {
       add_spring(units.col(i - 1), units.col(i), stiffness_ / h_, i);
@@ -126,7 +126,8 @@ class Hinges {
 
   /// Satisfies the constraints of length by Newton's method for the multipliers, whose matrix is
   /// tridiagonal.
-  bool keep_lengths(const Eigen::Matrix3Xd& along, double squared, Eigen::Matrix3Xd& next) {
+  bool satisfy_length_constraints(const Eigen::Matrix3Xd& along, double squared,
+                                  Eigen::Matrix3Xd& next) {
     constexpr int most = 20;
     const Eigen::Index n = along.cols();
     // Relative to h^2: rounding. Points at a distance of n h are accurate to half an epsilon of
@@ -175,12 +176,12 @@ class Hinges {
   double stiffness_;
   double h_;
   Eigen::VectorXd mass_;
-  Eigen::Matrix3Xd dead_;
+  Eigen::Matrix3Xd dead_loads_;
   Eigen::Matrix3Xd points_;
   Eigen::Matrix3Xd before_;
   Eigen::Matrix3Xd force_;
   Eigen::VectorXd multipliers_;
-  bool begins_ = true;
+  bool is_first_step_ = true;
 };
 
 }  // namespace

@@ -16,7 +16,7 @@ namespace dlo::compare {
 
 void check(const ForceModelSettings& settings, const std::string& where) {
   const Stepper stepper = settings.stepper;
-  const bool masses_or_newton = stepper == Stepper::verlet || stepper == Stepper::implicit;
+  const bool uses_masses = stepper == Stepper::verlet || stepper == Stepper::implicit;
   const bool automatic = stepper == Stepper::automatic;
   const struct {
     bool without_effect;
@@ -24,10 +24,10 @@ void check(const ForceModelSettings& settings, const std::string& where) {
     const char* allowed;
   } rules[] = {
       {settings.c_F && automatic, "c_F", "a stepper other than auto, which chooses its own"},
-      {settings.c_F && masses_or_newton, "c_F", "stepper basic, limited, relative or dynamic"},
+      {settings.c_F && uses_masses, "c_F", "stepper basic, limited, relative or dynamic"},
       {settings.c_h && stepper != Stepper::dynamic, "c_h", "stepper dynamic"},
       {settings.l_s && stepper == Stepper::basic, "l_s", "a stepper other than basic"},
-      {settings.l_s && masses_or_newton, "l_s", "stepper limited, relative, dynamic or auto"},
+      {settings.l_s && uses_masses, "l_s", "stepper limited, relative, dynamic or auto"},
       {settings.c_b && settings.law == BendingLaw::hooke, "c_b", "law paper"},
       {settings.joint_law && settings.law == BendingLaw::paper, "joint_law", "law hooke"},
       {settings.point_weight && settings.bookkeeping != Bookkeeping::paper, "point_weight",
@@ -76,7 +76,7 @@ double paper_bending_stiffness(BendingRule rule, double bending_stiffness, doubl
 }
 
 ForceModelSettings read_force_model(StrictTable& table) {
-  table.follow("force_model");
+  table.use_rows_of("force_model");
   ForceModelSettings settings;
   read_members(table, settings);
   table.finish();

@@ -79,12 +79,12 @@ double add_strands(const Layer& layer, LayeredSection& sum) {
         layer.strands, d, inner));
   }
   const double area = layer.strands * std::numbers::pi / 4 * d * d;
-  const double own = area * d * d / 16;
-  const double apart = area * ring * ring / 2;
-  sum.bonded_bending_stiffness += layer.youngs_modulus * (own + apart);
-  sum.free_bending_stiffness += layer.youngs_modulus * own;
-  sum.bonded_torsional_stiffness += 2 * shear_modulus(layer) * (own + apart);
-  sum.free_torsional_stiffness += 2 * shear_modulus(layer) * own;
+  const double centroid_term = area * d * d / 16;
+  const double steiner_term = area * ring * ring / 2;
+  sum.bonded_bending_stiffness += layer.youngs_modulus * (centroid_term + steiner_term);
+  sum.free_bending_stiffness += layer.youngs_modulus * centroid_term;
+  sum.bonded_torsional_stiffness += 2 * shear_modulus(layer) * (centroid_term + steiner_term);
+  sum.free_torsional_stiffness += 2 * shear_modulus(layer) * centroid_term;
   sum.outer_diameter = 2 * ring + d;
   return area;
 }

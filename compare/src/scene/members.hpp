@@ -10,7 +10,7 @@ namespace dlo::compare {
 // Each function calls `visit` with the keys of a table that are one member, and the members.
 
 template <typename Visit>
-void each_member(ForceModelSettings& settings, const Visit& visit) {
+void for_each_member(ForceModelSettings& settings, const Visit& visit) {
   visit("points", settings.points);
   visit("law", settings.law);
   visit("joint_law", settings.joint_law);
@@ -29,7 +29,7 @@ void each_member(ForceModelSettings& settings, const Visit& visit) {
 /// Visits the members of [rod]. @param scene  a Scene or a const Scene
 template <typename AnyScene, typename Visit>
 requires std::is_same_v<std::remove_const_t<AnyScene>, Scene>
-void each_member(AnyScene& scene, const Visit& visit) {
+void for_each_member(AnyScene& scene, const Visit& visit) {
   visit("length", scene.length);
   visit("diameter", scene.diameter);
   visit("width", scene.width);
@@ -41,7 +41,7 @@ void each_member(AnyScene& scene, const Visit& visit) {
 }
 
 template <typename Visit>
-void each_member(Section& section, const Visit& visit) {
+void for_each_member(Section& section, const Visit& visit) {
   visit("mass_per_length", section.mass_per_length);
   visit("torsional_stiffness", section.torsional_stiffness);
   visit("natural_curvature", section.natural_curvature);
@@ -52,7 +52,7 @@ void each_member(Section& section, const Visit& visit) {
 /// is.
 template <typename Owner>
 void read_members(StrictTable& table, Owner& owner) {
-  each_member(owner, [&table](const char* key, auto& member) { table.read(key, member); });
+  for_each_member(owner, [&table](const char* key, auto& member) { table.read(key, member); });
 }
 
 /// Reads the table [force_model].

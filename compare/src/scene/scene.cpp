@@ -115,7 +115,7 @@ NamedValue Scene::stiffness() const {
   return {"E", "Pa", material.youngs_modulus};
 }
 
-NamedValue Scene::heaviness() const {
+NamedValue Scene::mass_parameter() const {
   if (given_mass_per_length) return {"mass per length", "kg/m", *given_mass_per_length};
   return {"density", "kg/m^3", material.density};
 }
@@ -188,7 +188,7 @@ int Scene::spans() const {
   return count;
 }
 
-std::optional<TimeSpan> motion_of(const Scene& scene) {
+std::optional<TimeSpan> motion_time_span(const Scene& scene) {
   std::optional<TimeSpan> span;
   const auto add = [&span](const Trajectory& trajectory) {
     if (trajectory.empty()) return;

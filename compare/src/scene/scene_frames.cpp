@@ -47,10 +47,10 @@ std::optional<Eigen::Vector3d> scene_normal(const Scene& scene) {
   // The test uses each vector rather than the eigenvalue, which is the sum of their squares up to a
   // rounding of 1e-16.
   constexpr double noise = 1e-9;
-  const bool share_it = std::all_of(vectors.begin(), vectors.end(), [&](const auto& v) {
+  const bool is_common = std::all_of(vectors.begin(), vectors.end(), [&](const auto& v) {
     return std::abs(v.dot(normal)) <= noise * v.norm();
   });
-  if (!share_it) return std::nullopt;
+  if (!is_common) return std::nullopt;
   for (const std::size_t i : obstacles_in_reach(scene)) {
     const Eigen::Vector3d& within = scene.grippers.front().position;
     if (!scene.obstacles[i].body.is_symmetric(within, normal, scene.length)) return std::nullopt;
@@ -109,7 +109,7 @@ void Scene::set_rest_shape(const RestShape& shape) {
   }
   std::vector<Section> all;
   double at = 0;
-  const auto fill_to = [&](double end) {
+  const auto add_section_until = [&](double end) {
     if (!(end > at)) return;
     all.push_back({.from = at,
                    .to = end,
@@ -119,11 +119,11 @@ void Scene::set_rest_shape(const RestShape& shape) {
                    .bending_stiffness_2 = bending_stiffness_2()});
   };
   for (const Section& section : sections) {
-    fill_to(section.from);
+    add_section_until(section.from);
     all.push_back(section);
     at = section.to;
   }
-  fill_to(length);
+  add_section_until(length);
   sections.clear();
   for (Section section : all) {
     for (const RestShape::Arc& arc : shape.arcs) {
@@ -202,7 +202,7 @@ Eigen::Vector3d Scene::natural_curvature(double begin, double end) const {
   return first_frame().leftCols<2>() * mean;
 }
 
-bool Scene::holds_twist() const {
+bool Scene::prescribes_twist() const {
   const std::optional<std::size_t> always =
       has_material_directors() ? first_clamp_of(*this) : std::nullopt;
   int holding = 0;
@@ -223,7 +223,7 @@ Scene Scene::without_twist() const {
 }
 
 std::optional<Eigen::Vector3d> Scene::plane_normal() const {
-  if (holds_twist()) return std::nullopt;
+  if (prescribes_twist()) return std::nullopt;
   for (const PointLoad& load : loads) {
     const bool across = load.force.y() != 0 || load.torque.x() != 0 || load.torque.z() != 0;
     if (load.follows && across) return std::nullopt;

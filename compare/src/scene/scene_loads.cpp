@@ -35,7 +35,7 @@ Eigen::Vector3d Scene::distributed_between(double begin, double end) const {
   return sum;
 }
 
-double Scene::total_of_loads() const {
+double Scene::total_load_magnitude() const {
   double sum = 0;
   for (const PointLoad& load : loads) sum += load.force.norm() + load.torque.norm() / length;
   for (const DistributedLoad& load : distributed_loads) sum += load.size();

@@ -32,12 +32,13 @@ energy_model::Problem scene_problem(const Scene& scene) {
   problem.weight_per_length = scene.mass_per_length() * scene.gravity;
   for (const Section& section : scene.sections) {
     // The ratio is computed first, so that GJ is unchanged if EI is.
-    const double like_the_rod = section.mean_bending_stiffness() / scene.mean_bending_stiffness();
+    const double stiffness_ratio =
+        section.mean_bending_stiffness() / scene.mean_bending_stiffness();
     problem.sections.push_back({.begin = section.from,
                                 .end = section.to,
                                 .bending_stiffness = section.bending_stiffness,
                                 .torsional_stiffness = section.torsional_stiffness.value_or(
-                                    like_the_rod * problem.torsional_stiffness),
+                                    stiffness_ratio * problem.torsional_stiffness),
                                 .weight_per_length = section.mass_per_length * scene.gravity,
                                 .bending_stiffness_2 = section.bending_stiffness_2,
                                 .natural_curvature = section.natural_curvature,
@@ -48,9 +49,9 @@ energy_model::Problem scene_problem(const Scene& scene) {
     problem.natural_strains.emplace_back(strain.x(), strain.y(), 0);
   }
   for (const Gripper& grip : scene.grippers) {
-    energy_model::Grip held{grip.at, grip.position, grip.direction, std::nullopt};
-    if (grip.frame) held.frame = {grip.frame->d1, grip.frame->roll};
-    problem.grips.push_back(std::move(held));
+    energy_model::Grip result{grip.at, grip.position, grip.direction, std::nullopt};
+    if (grip.frame) result.frame = {grip.frame->d1, grip.frame->roll};
+    problem.grips.push_back(std::move(result));
   }
   for (const PointLoad& load : scene.loads) {
     problem.loads.push_back({load.at, load.force, load.torque, load.follows});

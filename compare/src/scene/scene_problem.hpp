@@ -33,7 +33,7 @@ namespace dlo::compare {
 void scale_length(Scene& scene, double factor);
 
 /// Returns the grippers by increasing arc length.
-[[nodiscard]] std::vector<const Gripper*> grippers_along(const Scene& scene);
+[[nodiscard]] std::vector<const Gripper*> grippers_by_arc_length(const Scene& scene);
 
 /// Returns, for each obstacle, a lower bound of the distance between it and the points of the rod
 /// [m], without stretch; negative: a point might enter it. With the rod's length and grips no point
@@ -54,15 +54,15 @@ void scale_length(Scene& scene, double factor);
 
 /// Returns the forces of all obstacles; those of obstacles out of reach are zero.
 /// @param in_reach  result of obstacles_in_reach();  @param forces  forces of these obstacles
-[[nodiscard]] std::vector<Eigen::Vector3d> forces_of_all(
+[[nodiscard]] std::vector<Eigen::Vector3d> expand_obstacle_forces(
     const Scene& scene, const std::vector<std::size_t>& in_reach,
     const std::vector<Eigen::Vector3d>& forces);
 
 /// Whether an obstacle that pushes the rod has friction. @param forces  of all obstacles [N]
-[[nodiscard]] bool touches_with_friction(const Scene& scene,
-                                         const std::vector<Eigen::Vector3d>& forces);
+[[nodiscard]] bool has_friction_contact(const Scene& scene,
+                                        const std::vector<Eigen::Vector3d>& forces);
 
 /// Whether an obstacle with friction is in reach; if none is, friction has no effect.
-[[nodiscard]] bool friction_in_reach(const Scene& scene);
+[[nodiscard]] bool is_friction_in_reach(const Scene& scene);
 
 }  // namespace dlo::compare

@@ -26,13 +26,13 @@ constexpr Eigen::Index most_coarse_points = 200;
 constexpr double least_squares_gain = 1e-9;
 /// Ratio of two mean squares of thinned points from which the worse direction is rejected without
 /// using all points. It is larger than what noise in the omitted points can cause.
-constexpr double clearly_worse = 4;
+constexpr double rejected_ratio = 4;
 /// Relative difference between the lengths of the file and the rod up to which the ends of the file
 /// are the ends of the rod. It covers the error of lengths along a dozen points of a smooth rod,
 /// and single precision.
 constexpr double end_slack = 1e-3;
 /// Share of the rod by which a file may be shorter and still be treated as the whole rod.
-constexpr double whole_slack = 0.03;
+constexpr double whole_rod_slack = 0.03;
 /// Number of positions along the rod at which a file that covers a part of it is tried.
 constexpr int coarse_places_along = 5;
 
@@ -56,7 +56,7 @@ Aligner::Aligner(const MeasuredShape& shape, double length, const AlignOptions& 
                                  shape.file, shape.points.cols()));
   }
   rule_ = arc_length_rule(shape, options.arc_lengths);
-  Way& along = ways_[0];
+  FilePoints& along = file_points_[0];
   along.points = shape.points;
   if (rule_ == ArcLengths::file) {
     along.arc_length = file_arc_lengths(shape, length);
@@ -65,9 +65,9 @@ Aligner::Aligner(const MeasuredShape& shape, double length, const AlignOptions& 
       along.points = along.points.rowwise().reverse().eval();
     }
   } else {
-    along.arc_length = lengths_along(along.points);
+    along.arc_length = arc_lengths_along(along.points);
     const double total = along.arc_length.back();
-    is_whole_ = total >= (1 - whole_slack) * length;
+    covers_whole_rod_ = total >= (1 - whole_rod_slack) * length;
     // The polyline of a chain is as long as the rod; for points of a curve the arcs are. Measured
     // points, which have equal weights, determine the ends only up to their noise.
     has_rod_ends_ = options.weights == PointWeights::by_length &&
@@ -75,12 +75,12 @@ Aligner::Aligner(const MeasuredShape& shape, double length, const AlignOptions& 
                     polyline_length(along.points) <= (1 + end_slack) * length;
     if (rule_ == ArcLengths::chord || total > length) along = stretched_to_rod(std::move(along));
   }
-  ways_[1].points = along.points.rowwise().reverse();
+  file_points_[1].points = along.points.rowwise().reverse();
   const double end = rule_ == ArcLengths::nearest ? along.arc_length.back() : length;
-  ways_[1].arc_length = mirrored(along.arc_length, end);
+  file_points_[1].arc_length = mirrored(along.arc_length, end);
 }
 
-Aligner::Way Aligner::stretched_to_rod(Way way) const {
+Aligner::FilePoints Aligner::stretched_to_rod(FilePoints way) const {
   const double first = way.arc_length.front();
   const double total = way.arc_length.back() - first;
   for (double& s : way.arc_length) s = std::min((s - first) / total * length_, length_);
@@ -127,9 +127,10 @@ RigidMotion Aligner::closest_pose(const Eigen::Matrix3Xd& from, const Eigen::Mat
   return pose;
 }
 
-Aligner::Placed Aligner::place_given(const Way& way, const Curve& curve) const {
+Aligner::Placement Aligner::fit_pose_at_given_arc_lengths(const FilePoints& way,
+                                                          const Curve& curve) const {
   const Eigen::Matrix3Xd reference = curve.points(way.arc_length);
-  Placed placed;
+  Placement placed;
   placed.arc_length = way.arc_length;
   const Eigen::VectorXd weight = weights(way.arc_length, way.points);
   placed.pose = closest_pose(way.points, reference, weight);
@@ -137,10 +138,11 @@ Aligner::Placed Aligner::place_given(const Way& way, const Curve& curve) const {
   return placed;
 }
 
-Aligner::Way Aligner::thinned(const Way& way) {
+Aligner::FilePoints Aligner::thinned(const FilePoints& way) {
   const Eigen::Index every = (way.points.cols() + most_coarse_points - 1) / most_coarse_points;
   const Eigen::Index count = (way.points.cols() - 1) / every + 1;
-  Way result{Eigen::Matrix3Xd(3, count), std::vector<double>(static_cast<std::size_t>(count))};
+  FilePoints result{Eigen::Matrix3Xd(3, count),
+                    std::vector<double>(static_cast<std::size_t>(count))};
   for (Eigen::Index i = 0; i < count; ++i) {
     result.points.col(i) = way.points.col(i * every);
     result.arc_length[static_cast<std::size_t>(i)] =
@@ -149,15 +151,16 @@ Aligner::Way Aligner::thinned(const Way& way) {
   return result;
 }
 
-std::vector<Aligner::Placed> Aligner::coarse_places(const Way& way, const Curve& curve) const {
-  const Way few = thinned(way);
-  const Eigen::Matrix3Xd& points = few.points;
+std::vector<Aligner::Placement> Aligner::coarse_placements(const FilePoints& way,
+                                                           const Curve& curve) const {
+  const FilePoints thin = thinned(way);
+  const Eigen::Matrix3Xd& points = thin.points;
   const double slack = length_ - way.arc_length.back();
-  const int places = slack > whole_slack * length_ ? coarse_places_along : 1;
-  std::vector<Placed> result;
+  const int places = slack > whole_rod_slack * length_ ? coarse_places_along : 1;
+  std::vector<Placement> result;
   for (int place = 0; place < places; ++place) {
-    Placed placed;
-    placed.arc_length = few.arc_length;
+    Placement placed;
+    placed.arc_length = thin.arc_length;
     const double offset = places > 1 ? slack * place / (places - 1) : slack / 2;
     for (double& s : placed.arc_length) s = std::clamp(s + offset, 0.0, length_);
     for (int round = 0; round < 3; ++round) {
@@ -170,14 +173,15 @@ std::vector<Aligner::Placed> Aligner::coarse_places(const Way& way, const Curve&
                              weights(placed.arc_length, points));
     result.push_back(std::move(placed));
   }
-  std::stable_sort(result.begin(), result.end(),
-                   [](const Placed& a, const Placed& b) { return a.mean_square < b.mean_square; });
+  std::stable_sort(result.begin(), result.end(), [](const Placement& a, const Placement& b) {
+    return a.mean_square < b.mean_square;
+  });
   return result;
 }
 
-Aligner::Placed Aligner::refine_all(const Way& way, const Curve& curve,
-                                    const RigidMotion& start) const {
-  Placed placed;
+Aligner::Placement Aligner::refine_placement(const FilePoints& way, const Curve& curve,
+                                             const RigidMotion& start) const {
+  Placement placed;
   placed.pose = start;
   constexpr int most_rounds = 6;
   double before = INFINITY;
@@ -192,7 +196,7 @@ Aligner::Placed Aligner::refine_all(const Way& way, const Curve& curve,
 }
 
 void Aligner::gauss_newton(const Eigen::Matrix3Xd& points, const Curve& curve,
-                           Placed& placed) const {
+                           Placement& placed) const {
   const Eigen::VectorXd weight = weights(placed.arc_length, points);
   const auto cost = [&](const Eigen::Matrix3Xd& moved, const std::vector<double>& s) {
     return (moved - curve.points(s)).colwise().squaredNorm().transpose().dot(weight);
@@ -255,25 +259,26 @@ void Aligner::gauss_newton(const Eigen::Matrix3Xd& points, const Curve& curve,
   }
 }
 
-Aligner::Placed Aligner::best_place(const Way& way, const Curve& curve) const {
-  if (!has_free_arc_lengths()) return place_given(way, curve);
-  if (options_.pose == PoseFreedom::known) return refine_all(way, curve, RigidMotion());
-  const Placed few = best_of_few(way, curve);
-  return is_dense() ? refine_all(way, curve, few.pose) : few;
+Aligner::Placement Aligner::best_placement(const FilePoints& way, const Curve& curve) const {
+  if (!has_free_arc_lengths()) return fit_pose_at_given_arc_lengths(way, curve);
+  if (options_.pose == PoseFreedom::known) return refine_placement(way, curve, RigidMotion());
+  const Placement thinned_place = best_placement_of_thinned(way, curve);
+  return is_dense() ? refine_placement(way, curve, thinned_place.pose) : thinned_place;
 }
 
-Aligner::Placed Aligner::best_of_few(const Way& way, const Curve& curve) const {
-  const Way few = thinned(way);
-  const std::vector<Placed> coarse = coarse_places(way, curve);
-  Placed best = refine_all(few, curve, coarse.front().pose);
+Aligner::Placement Aligner::best_placement_of_thinned(const FilePoints& way,
+                                                      const Curve& curve) const {
+  const FilePoints thin = thinned(way);
+  const std::vector<Placement> coarse = coarse_placements(way, curve);
+  Placement best = refine_placement(thin, curve, coarse.front().pose);
   if (coarse.size() > 1) {
-    Placed second = refine_all(few, curve, coarse[1].pose);
+    Placement second = refine_placement(thin, curve, coarse[1].pose);
     if (second.mean_square < best.mean_square) best = std::move(second);
   }
   return best;
 }
 
-Alignment Aligner::finished(const Placed& placed, bool reversed, const Curve& curve) const {
+Alignment Aligner::finished(const Placement& placed, bool reversed, const Curve& curve) const {
   Alignment result;
   result.pose = placed.pose;
   result.reversed = reversed;
@@ -287,7 +292,7 @@ Alignment Aligner::finished(const Placed& placed, bool reversed, const Curve& cu
     s.front() = 0;
     s.back() = length_;
   }
-  result.shape.points = placed.pose.applied(ways_[reversed ? 1 : 0].points);
+  result.shape.points = placed.pose.applied(file_points_[reversed ? 1 : 0].points);
   const Eigen::Matrix3Xd gaps = result.shape.points - curve.points(s);
   result.rms_m = std::sqrt(weighted_mean_square(gaps, weights(s, result.shape.points)));
   result.mean_square =
@@ -295,17 +300,20 @@ Alignment Aligner::finished(const Placed& placed, bool reversed, const Curve& cu
   return result;
 }
 
-double Aligner::told_distance(const Alignment& laid, const Curve& curve, Measured& measured) const {
+double Aligner::reported_distance(const Alignment& aligned, const Curve& curve,
+                                  Measured& measured) const {
   const Reference reference = [&curve](std::span<const double> s) {
     energy_model::Samples samples;
     samples.points = curve.points({s.begin(), s.end()});
     return samples;
   };
-  measured = measure(laid, reference, length_);
-  return is_whole_ ? whole_of(measured, laid, reference, length_).rms_m : measured.rms_m;
+  measured = measure(aligned, reference, length_);
+  return covers_whole_rod_ ? whole_rod_distances(measured, aligned, reference, length_).rms_m
+                           : measured.rms_m;
 }
 
-Alignment Aligner::spread(const Way& way, RigidMotion pose, const Curve& curve) const {
+Alignment Aligner::refine_by_reported_distance(const FilePoints& way, RigidMotion pose,
+                                               const Curve& curve) const {
   constexpr int most_rounds = 50;
   Alignment best;
   best.rms_m = INFINITY;
@@ -315,7 +323,7 @@ Alignment Aligner::spread(const Way& way, RigidMotion pose, const Curve& curve) 
     next.shape.points = pose.applied(way.points);
     next.shape.arc_length = curve.nearest_in_order(next.shape.points);
     Measured measured;
-    next.rms_m = told_distance(next, curve, measured);
+    next.rms_m = reported_distance(next, curve, measured);
     if (!(next.rms_m < (1 - 1e-6) * best.rms_m)) break;
     best = std::move(next);
     pose = closest_pose(way.points, measured.reference,
@@ -324,19 +332,20 @@ Alignment Aligner::spread(const Way& way, RigidMotion pose, const Curve& curve) 
   return best;
 }
 
-Alignment Aligner::laid(std::size_t way, const Placed& nearest, const Curve& curve) const {
+Alignment Aligner::aligned(std::size_t way, const Placement& nearest, const Curve& curve) const {
   Alignment result = finished(nearest, way == 1, curve);
-  const bool is_told = options_.weights == PointWeights::by_length;
-  if (!has_free_arc_lengths() || free_coordinates() == 0 || !is_told) return result;
+  const bool weights_by_length = options_.weights == PointWeights::by_length;
+  if (!has_free_arc_lengths() || free_coordinates() == 0 || !weights_by_length) return result;
   RigidMotion pose = nearest.pose;
-  if (is_dense()) pose = spread(thinned(ways_[way]), pose, curve).pose;
-  Placed placed{.pose = spread(ways_[way], pose, curve).pose};
-  placed.arc_length = curve.nearest_in_order(placed.pose.applied(ways_[way].points));
+  if (is_dense()) pose = refine_by_reported_distance(thinned(file_points_[way]), pose, curve).pose;
+  Placement placed{.pose = refine_by_reported_distance(file_points_[way], pose, curve).pose};
+  placed.arc_length = curve.nearest_in_order(placed.pose.applied(file_points_[way].points));
   result = finished(placed, way == 1, curve);
   Measured measured;
-  result.rms_m = told_distance(result, curve, measured);
-  if (!is_whole_) return result;
-  Alignment whole = finished(place_given(stretched_to_rod(ways_[way]), curve), way == 1, curve);
+  result.rms_m = reported_distance(result, curve, measured);
+  if (!covers_whole_rod_) return result;
+  Alignment whole = finished(
+      fit_pose_at_given_arc_lengths(stretched_to_rod(file_points_[way]), curve), way == 1, curve);
   whole.arc_lengths = ArcLengths::chord;
   return whole.rms_m < result.rms_m ? whole : result;
 }
@@ -344,27 +353,29 @@ Alignment Aligner::laid(std::size_t way, const Placed& nearest, const Curve& cur
 Alignment Aligner::align(const Curve& curve) const {
   if (is_dense() && has_free_arc_lengths() && free_coordinates() > 0) {
     // A part of the points suffices to reject a direction that is clearly wrong.
-    const std::array few = {best_of_few(ways_[0], curve), best_of_few(ways_[1], curve)};
+    const std::array thinned_places = {best_placement_of_thinned(file_points_[0], curve),
+                                       best_placement_of_thinned(file_points_[1], curve)};
     for (const std::size_t way : {0, 1}) {
-      const Placed& other = few[1 - way];
-      if (!(other.mean_square > clearly_worse * few[way].mean_square)) continue;
-      Alignment result = laid(way, refine_all(ways_[way], curve, few[way].pose), curve);
-      result.other_rms_m = std::sqrt(other.mean_square);
+      const Placement& other = thinned_places[1 - way];
+      if (!(other.mean_square > rejected_ratio * thinned_places[way].mean_square)) continue;
+      Alignment result =
+          aligned(way, refine_placement(file_points_[way], curve, thinned_places[way].pose), curve);
+      result.opposite_direction_rms_m = std::sqrt(other.mean_square);
       return result;
     }
   }
   // The directions are compared with arc lengths in order. Points that run the other way fit well
   // only out of order.
-  Alignment along = laid(0, best_place(ways_[0], curve), curve);
-  Alignment against = laid(1, best_place(ways_[1], curve), curve);
+  Alignment along = aligned(0, best_placement(file_points_[0], curve), curve);
+  Alignment against = aligned(1, best_placement(file_points_[1], curve), curve);
   // If both directions fit equally well, the file runs along the rod.
   const double rounding = 1e-12 * length_;
   if (against.rms_m + rounding < (1 - 1e-9) * along.rms_m) std::swap(along, against);
-  along.other_rms_m = against.rms_m;
+  along.opposite_direction_rms_m = against.rms_m;
   return along;
 }
 
-Eigen::Vector3d up_of(const Scene& scene, PoseFreedom pose) {
+Eigen::Vector3d upward_direction(const Scene& scene, PoseFreedom pose) {
   if (pose != PoseFreedom::upright) return Eigen::Vector3d::UnitY();
   if (!(scene.gravity.norm() > 0)) {
     throw InputError(fmt::format(

@@ -18,18 +18,18 @@ class Aligner {
 
   [[nodiscard]] Alignment align(const Curve& curve) const;
 
-  [[nodiscard]] Eigen::Index points() const { return ways_[0].points.cols(); }
+  [[nodiscard]] Eigen::Index points() const { return file_points_[0].points.cols(); }
   [[nodiscard]] ArcLengths arc_lengths() const { return rule_; }
   /// Returns the number of free coordinates of the motion: 0, 3, 4 or 6.
   [[nodiscard]] Eigen::Index free_coordinates() const;
 
  private:
   /// The file's points by growing arc length, for one direction in which the file may run.
-  struct Way {
+  struct FilePoints {
     Eigen::Matrix3Xd points;
     std::vector<double> arc_length;  // arc lengths as given, or an estimate along the polyline
   };
-  struct Placed {
+  struct Placement {
     RigidMotion pose;
     std::vector<double> arc_length;
     double mean_square = 0;  // weighted
@@ -40,38 +40,44 @@ class Aligner {
                                         const Eigen::Matrix3Xd& points) const;
   [[nodiscard]] RigidMotion closest_pose(const Eigen::Matrix3Xd& from, const Eigen::Matrix3Xd& to,
                                          const Eigen::VectorXd& weight) const;
-  [[nodiscard]] Placed place_given(const Way& way, const Curve& curve) const;
+  [[nodiscard]] Placement fit_pose_at_given_arc_lengths(const FilePoints& way,
+                                                        const Curve& curve) const;
   /// Whether thinned() omits points.
   [[nodiscard]] bool is_dense() const;
-  [[nodiscard]] static Way thinned(const Way& way);
-  [[nodiscard]] std::vector<Placed> coarse_places(const Way& way, const Curve& curve) const;
-  [[nodiscard]] Placed refine_all(const Way& way, const Curve& curve,
-                                  const RigidMotion& start) const;
-  void gauss_newton(const Eigen::Matrix3Xd& points, const Curve& curve, Placed& placed) const;
-  [[nodiscard]] Way stretched_to_rod(Way way) const;
+  [[nodiscard]] static FilePoints thinned(const FilePoints& way);
+  [[nodiscard]] std::vector<Placement> coarse_placements(const FilePoints& way,
+                                                         const Curve& curve) const;
+  [[nodiscard]] Placement refine_placement(const FilePoints& way, const Curve& curve,
+                                           const RigidMotion& start) const;
+  void gauss_newton(const Eigen::Matrix3Xd& points, const Curve& curve, Placement& placed) const;
+  [[nodiscard]] FilePoints stretched_to_rod(FilePoints way) const;
   /// Returns the RMS distance that ShapeCheck reports for an aligned shape [m]. A file that is as
   /// long as the rod is compared with the whole rod.
   /// @param[out] measured  the distances
-  [[nodiscard]] double told_distance(const Alignment& laid, const Curve& curve,
-                                     Measured& measured) const;
-  /// Iterates from a pose as long as told_distance() decreases. This is needed because measure()
-  /// redistributes points past an end, which is no part of the distances across the curve that
-  /// refine_all() minimises.
-  [[nodiscard]] Alignment spread(const Way& way, RigidMotion pose, const Curve& curve) const;
+  [[nodiscard]] double reported_distance(const Alignment& aligned, const Curve& curve,
+                                         Measured& measured) const;
+  /// Iterates from a pose as long as reported_distance() decreases. This is needed because
+  /// measure() redistributes points past an end, which is no part of the distances across the curve
+  /// that refine_placement() minimises.
+  [[nodiscard]] Alignment refine_by_reported_distance(const FilePoints& way, RigidMotion pose,
+                                                      const Curve& curve) const;
   /// Returns the alignment with nearest points. A file that is as long as the rod is aligned by
   /// lengths along it instead, where that gives the smaller distance.
-  [[nodiscard]] Alignment laid(std::size_t way, const Placed& nearest, const Curve& curve) const;
+  [[nodiscard]] Alignment aligned(std::size_t way, const Placement& nearest,
+                                  const Curve& curve) const;
   /// Returns the best alignment of the thinned points.
-  [[nodiscard]] Placed best_of_few(const Way& way, const Curve& curve) const;
-  [[nodiscard]] Placed best_place(const Way& way, const Curve& curve) const;
-  [[nodiscard]] Alignment finished(const Placed& placed, bool reversed, const Curve& curve) const;
+  [[nodiscard]] Placement best_placement_of_thinned(const FilePoints& way,
+                                                    const Curve& curve) const;
+  [[nodiscard]] Placement best_placement(const FilePoints& way, const Curve& curve) const;
+  [[nodiscard]] Alignment finished(const Placement& placed, bool reversed,
+                                   const Curve& curve) const;
 
   double length_;
   AlignOptions options_;
   ArcLengths rule_ = ArcLengths::nearest;
-  bool is_whole_ = false;      // the polyline is as long as the rod, within whole_slack
+  bool covers_whole_rod_ = false;  // the polyline is as long as the rod, within whole_rod_slack
   bool has_rod_ends_ = false;  // as long as the rod within end_slack: its ends are those of the rod
-  std::array<Way, 2> ways_;    // file runs along the rod, against it
+  std::array<FilePoints, 2> file_points_;  // file runs along the rod, against it
 };
 
 }  // namespace dlo::compare

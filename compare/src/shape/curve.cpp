@@ -27,8 +27,8 @@ double distance_from_grippers(const Shape& shape, const Scene& scene) {
     const double at = std::clamp(gripper.at, s.front(), s.back());
     const Eigen::Vector3d there = resample(shape, {at}).points.col(0);
     const double beyond = std::abs(gripper.at - at);
-    const double away = std::max(0.0, (there - gripper.position).norm() - beyond);
-    sum += away * away;
+    const double distance = std::max(0.0, (there - gripper.position).norm() - beyond);
+    sum += distance * distance;
   }
   return std::sqrt(sum);
 }
@@ -56,12 +56,12 @@ Shape without_repeated_lengths(const Shape& shape) {
   return result;
 }
 
-constexpr Eigen::Index curve_pieces = 200;
+constexpr Eigen::Index curve_elements = 200;
 
 }  // namespace
 
-Shape laid_by_grippers(const MeasuredShape& shape, const Scene& scene, ArcLengths rule) {
-  constexpr double whole_slack = 0.03;
+Shape aligned_by_grippers(const MeasuredShape& shape, const Scene& scene, ArcLengths rule) {
+  constexpr double whole_rod_slack = 0.03;
   constexpr int places_along = 21;
   const double length = scene.length;
   Shape along;
@@ -74,9 +74,9 @@ Shape laid_by_grippers(const MeasuredShape& shape, const Scene& scene, ArcLength
       std::reverse(along.arc_length.begin(), along.arc_length.end());
     }
   } else {
-    along.arc_length = lengths_along(shape.points);
+    along.arc_length = arc_lengths_along(shape.points);
     const double total = along.arc_length.back();
-    const bool whole = rule == ArcLengths::chord || total > (1 - whole_slack) * length;
+    const bool whole = rule == ArcLengths::chord || total > (1 - whole_rod_slack) * length;
     for (double& s : along.arc_length) s = std::min(whole ? s / total * length : s, length);
   }
   const bool moves = rule != ArcLengths::file && along.arc_length.back() < length;
@@ -89,9 +89,9 @@ Shape laid_by_grippers(const MeasuredShape& shape, const Scene& scene, ArcLength
     const double offset = places > 1 ? slack * place / (places - 1) : 0;
     for (double& s : moved.arc_length) s = std::min(s + offset, length);
     for (const Shape& laid : {moved, reversed(moved, length)}) {
-      const double away = distance_from_grippers(laid, scene);
-      if (!(away < least)) continue;
-      least = away;
+      const double distance = distance_from_grippers(laid, scene);
+      if (!(distance < least)) continue;
+      least = distance;
       best = laid;
     }
   }
@@ -130,7 +130,7 @@ Eigen::VectorXd chord_lengths(const Eigen::Matrix3Xd& points) {
   return (points.rightCols(n) - points.leftCols(n)).colwise().norm();
 }
 
-std::vector<double> lengths_along(const Eigen::Matrix3Xd& points) {
+std::vector<double> arc_lengths_along(const Eigen::Matrix3Xd& points) {
   const Eigen::Index count = points.cols();
   const Eigen::Matrix3Xd chords = points.rightCols(count - 1) - points.leftCols(count - 1);
   const Eigen::VectorXd d = chords.colwise().norm().transpose();
@@ -152,18 +152,18 @@ std::vector<double> lengths_along(const Eigen::Matrix3Xd& points) {
 }
 
 bool lacks_one_segment(const Eigen::Matrix3Xd& points, double length) {
-  constexpr double alike = 0.1;
+  constexpr double tolerance = 0.1;
   const Eigen::Index segments = points.cols() - 1;
   const Eigen::VectorXd lengths = chord_lengths(points);
-  const double whole = lengths_along(points).back();
+  const double whole = arc_lengths_along(points).back();
   const double segment = whole / static_cast<double>(segments);
-  return segments > 2 && lengths.maxCoeff() < (1 + alike) * lengths.minCoeff() &&
-         std::abs(length - whole - segment) < alike * segment;
+  return segments > 2 && lengths.maxCoeff() < (1 + tolerance) * lengths.minCoeff() &&
+         std::abs(length - whole - segment) < tolerance * segment;
 }
 
 Curve::Curve(const Reference& reference, double length)
-    : length_(length), step_(length / static_cast<double>(curve_pieces)) {
-  std::vector<double> s(static_cast<std::size_t>(curve_pieces) + 1);
+    : length_(length), step_(length / static_cast<double>(curve_elements)) {
+  std::vector<double> s(static_cast<std::size_t>(curve_elements) + 1);
   for (std::size_t i = 0; i < s.size(); ++i) s[i] = static_cast<double>(i) * step_;
   s.back() = length;
   energy_model::Samples samples = reference(s);
@@ -173,7 +173,7 @@ Curve::Curve(const Reference& reference, double length)
 
 Curve::Local Curve::at(double s) const {
   const auto piece =
-      std::clamp(static_cast<Eigen::Index>(s / step_), Eigen::Index{0}, curve_pieces - 1);
+      std::clamp(static_cast<Eigen::Index>(s / step_), Eigen::Index{0}, curve_elements - 1);
   const double u = s / step_ - static_cast<double>(piece);
   const Eigen::Vector3d a = nodes_.col(piece);
   const Eigen::Vector3d ta = step_ * tangents_.col(piece);
@@ -205,12 +205,12 @@ double Curve::nearest(const Eigen::Vector3d& position, double s) const {
     for (int halving = 0; halving < 8 && !moved; ++halving, move /= 2) {
       const double next = std::clamp(s + move, 0.0, length_);
       if (std::abs(next - s) < 1e-13 * length_) return s;
-      const Local there = at(next);
-      const double there_distance = (position - there.point).squaredNorm();
-      if (!(there_distance < distance)) continue;
+      const Local next_local = at(next);
+      const double next_distance = (position - next_local.point).squaredNorm();
+      if (!(next_distance < distance)) continue;
       s = next;
-      local = there;
-      distance = there_distance;
+      local = next_local;
+      distance = next_distance;
       moved = true;
     }
     if (!moved) return s;
@@ -220,7 +220,7 @@ double Curve::nearest(const Eigen::Vector3d& position, double s) const {
 
 std::vector<double> Curve::nearest_in_order(const Eigen::Matrix3Xd& positions) const {
   const Eigen::Index count = positions.cols();
-  constexpr Eigen::Index nodes = curve_pieces + 1;
+  constexpr Eigen::Index nodes = curve_elements + 1;
   // sums[g]: least sum of squares with the last point so far at node g; from: node of its
   // predecessor
   Eigen::VectorXd sums = Eigen::VectorXd::Zero(nodes);

@@ -61,7 +61,7 @@ class Curve {
 
 /// Returns lengths along a curve through the points [m]. A chord d with the mean curvature k of its
 /// ends is replaced by an arc of length d (1 + (k d)^2 / 24).
-[[nodiscard]] std::vector<double> lengths_along(const Eigen::Matrix3Xd& points);
+[[nodiscard]] std::vector<double> arc_lengths_along(const Eigen::Matrix3Xd& points);
 
 /// Assigns arc lengths to a shape in the scene's frame by means of the grippers. The result is a
 /// guess of the rod's shape that needs no equilibrium. Arc lengths are those of the file, or
@@ -72,8 +72,8 @@ class Curve {
 /// @return the points by strictly growing arc length; only the first of several with one arc length
 /// is kept
 /// @throws InputError in the cases of file_arc_lengths()
-[[nodiscard]] Shape laid_by_grippers(const MeasuredShape& shape, const Scene& scene,
-                                     ArcLengths rule);
+[[nodiscard]] Shape aligned_by_grippers(const MeasuredShape& shape, const Scene& scene,
+                                        ArcLengths rule);
 
 /// Whether points at equal distances are shorter than a rod by one of their segments, to a tenth of
 /// it. This is the case if the points are the start points of a chain's bodies, without the end of

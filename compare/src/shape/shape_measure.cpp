@@ -20,9 +20,9 @@ enum class RodEnd { start, end };
 /// Returns for each point how far the points up to it extend past the rod's end [m]: the running
 /// maximum of the distances from the end, beginning at the innermost point whose nearest point is
 /// the end; 0 for points whose nearest point is on the rod.
-std::vector<double> distances_past(const std::vector<double>& s, const Eigen::Matrix3Xd& points,
-                                   double end, double rounding, const Eigen::Vector3d& rod_end,
-                                   RodEnd side) {
+std::vector<double> overshoot_distances(const std::vector<double>& s,
+                                        const Eigen::Matrix3Xd& points, double end, double rounding,
+                                        const Eigen::Vector3d& rod_end, RodEnd side) {
   std::vector<double> past(s.size(), 0.0);
   double largest = 0;
   for (std::size_t k = 0; k < s.size(); ++k) {
@@ -81,9 +81,9 @@ Measured measure(const Alignment& alignment, const Reference& reference, double 
     const double rounding = end_rounding * length;
     const Eigen::Matrix3Xd ends = reference(std::vector<double>{0, length}).points;
     std::vector<double> before =
-        distances_past(s, shape.points, 0, rounding, ends.col(0), RodEnd::start);
+        overshoot_distances(s, shape.points, 0, rounding, ends.col(0), RodEnd::start);
     std::vector<double> after =
-        distances_past(s, shape.points, length, rounding, ends.col(1), RodEnd::end);
+        overshoot_distances(s, shape.points, length, rounding, ends.col(1), RodEnd::end);
     const double covered = s.back() - s.front();
     const double longer = std::max(0.0, polyline_length(shape.points) - covered);
     const double past = before.front() + after.back();
@@ -109,8 +109,8 @@ Measured measure(const Alignment& alignment, const Reference& reference, double 
   return result;
 }
 
-WholeRod whole_of(const Measured& measured, const Alignment& alignment, const Reference& reference,
-                  double length) {
+WholeRod whole_rod_distances(const Measured& measured, const Alignment& alignment,
+                             const Reference& reference, double length) {
   const std::vector<double>& s = measured.arc_length;
   const Eigen::Matrix3Xd& points = alignment.shape.points;
   double covered = s.back() - s.front();
@@ -134,8 +134,8 @@ WholeRod whole_of(const Measured& measured, const Alignment& alignment, const Re
   return whole;
 }
 
-std::vector<RodPart> parts_between(const std::vector<double>& s, const Reference& reference,
-                                   double length) {
+std::vector<RodPart> intervals_between_points(const std::vector<double>& s,
+                                              const Reference& reference, double length) {
   constexpr double least_part = 1e-3;
   constexpr double least_distance = 0.1;
   std::vector<RodPart> result;
@@ -163,8 +163,9 @@ std::vector<RodPart> parts_between(const std::vector<double>& s, const Reference
   if (middle.empty()) return result;
   const Eigen::Matrix3Xd expected = reference(middle).points;
   for (std::size_t k = 0; k < middle.size(); ++k) {
-    const Eigen::Vector3d told = interpolated_point(s, points, nodes[k], middle[k]);
-    result[k].untold_m = (told - expected.col(static_cast<Eigen::Index>(k))).norm();
+    const Eigen::Vector3d interpolated = interpolated_point(s, points, nodes[k], middle[k]);
+    result[k].interpolation_error_m =
+        (interpolated - expected.col(static_cast<Eigen::Index>(k))).norm();
   }
   return result;
 }

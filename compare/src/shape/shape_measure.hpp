@@ -47,8 +47,8 @@ struct WholeRod {
 
 /// Computes the distances between a file and the whole rod. A part of the rod that the file lacks
 /// at an end is compared with the outermost point.
-[[nodiscard]] WholeRod whole_of(const Measured& measured, const Alignment& alignment,
-                                const Reference& reference, double length);
+[[nodiscard]] WholeRod whole_rod_distances(const Measured& measured, const Alignment& alignment,
+                                           const Reference& reference, double length);
 
 /// Returns the index of the point at the end of the rod that no gripper holds, std::nullopt if the
 /// points do not reach such an end; if they reach two, that at arc length l.
@@ -60,7 +60,8 @@ struct WholeRod {
 /// the interpolation error of each: the distance between the reference at the middle and the cubic
 /// through the reference at the four points around. Fewer points are used at the ends, and none
 /// that is nearer to the interval than a tenth of its length.
-[[nodiscard]] std::vector<RodPart> parts_between(const std::vector<double>& s,
-                                                 const Reference& reference, double length);
+[[nodiscard]] std::vector<RodPart> intervals_between_points(const std::vector<double>& s,
+                                                            const Reference& reference,
+                                                            double length);
 
 }  // namespace dlo::compare

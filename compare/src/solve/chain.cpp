@@ -21,13 +21,13 @@ namespace {
 
 /// Returns force and torque of the gripper on a polygon without stretch. The force balances all
 /// loads; the torque includes that on the first segment.
-GripperLoad holding_load(const Discretisation& discretisation, const ChainScene& chain,
-                         const energy_model::ChainResult& result) {
+GripperLoad gripper_load_on_chain(const Discretisation& discretisation, const ChainScene& chain,
+                                  const energy_model::ChainResult& result) {
   GripperLoad load;
   load.force = -discretisation.rod.loads.rowwise().sum();
   const Eigen::Vector3d start = chain.to_space(result.points.leftCols<1>());
   const Eigen::Vector3d arm = start - discretisation.rod.grips.front().reference;
-  load.torque = result.held_torque * chain.x.cross(chain.y) + arm.cross(load.force);
+  load.torque = result.clamp_torque * chain.x.cross(chain.y) + arm.cross(load.force);
   return load;
 }
 
@@ -57,10 +57,10 @@ std::optional<Solution> solve_rigid_chain(const Scene& scene, const ForceModelSe
   solution.status = result.status;
   solution.message = result.message;
   if (settings.joint_law) solution.energy.bending = result.bending_energy;
-  solution.grippers =
-      balanced(scene, discretisation.rod, points, {holding_load(discretisation, chain, result)},
-               energy_model::allowed_imbalance, "chain")
-          .loads;
+  solution.grippers = balanced(scene, discretisation.rod, points,
+                               {gripper_load_on_chain(discretisation, chain, result)},
+                               energy_model::allowed_imbalance, "chain")
+                          .loads;
   solution.evaluations = result.evaluations;
   solution.seconds = result.seconds;
   return solution;
@@ -106,8 +106,8 @@ Solution solve_elastic_chain(const Scene& scene, const ForceModelSettings& setti
 
 Solution solve_chain(const Scene& scene, const ForceModelSettings& settings,
                      const SolveOptions& options) {
-  if (const std::optional<PlaneTurn> turn = turn_into_plane(scene, settings)) {
-    return turned_back(solve_chain(turn->laid(scene), settings, options), *turn);
+  if (const std::optional<PlaneTransform> turn = plane_transform(scene, settings)) {
+    return solution_in_space(solve_chain(turn->transformed(scene), settings, options), *turn);
   }
   ForceModelSettings polygon = settings;
   polygon.joint_law.reset();
@@ -122,20 +122,20 @@ Solution solve_chain(const Scene& scene, const ForceModelSettings& settings,
 
 Shape chain_from(const Scene& scene, const ForceModelSettings& settings, const Shape& start,
                  const SolveOptions& options) {
-  if (const std::optional<PlaneTurn> turn = turn_into_plane(scene, settings)) {
-    Shape laid = start;
-    laid.points = turn->laid_points(start.points);
-    Shape result = chain_from(turn->laid(scene), settings, laid, options);
-    result.points = turn->points_back(result.points);
+  if (const std::optional<PlaneTransform> turn = plane_transform(scene, settings)) {
+    Shape transformed = start;
+    transformed.points = turn->transformed_points(start.points);
+    Shape result = chain_from(turn->transformed(scene), settings, transformed, options);
+    result.points = turn->points_to_space(result.points);
     return result;
   }
   const Discretisation discretisation = discretise(scene, settings);
   Eigen::Matrix3Xd points = resample(start, discretisation.arc_length).points;
   // A planar shape lies in the plane only up to rounding, and its joints have rest angles in the
   // plane.
-  if (takes_natural_curvature(scene, settings)) points.row(2).setZero();
+  if (models_natural_curvature(scene, settings)) points.row(2).setZero();
   // The frames, and the whole turns nearest to their twist, are those found from the lowest shape.
-  const force_model::Rod rod = takes_twist(scene, settings)
+  const force_model::Rod rod = models_twist(scene, settings)
                                    ? lowest_polygon(scene, settings, discretisation, options).rod
                                    : discretisation.rod;
   const energy_model::PolygonResult result = energy_model::solve_polygon(

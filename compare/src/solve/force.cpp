@@ -29,7 +29,7 @@ namespace {
 
 /// Fraction of the displacement from the start to the chain's shape at which a simulation starts
 /// close enough not to swing past that shape.
-constexpr double nearly_there = 0.9;
+constexpr double start_fraction = 0.9;
 
 /// Initial state of a simulation, and the shape at which it should come to rest.
 struct SimulationStart {
@@ -50,32 +50,32 @@ SimulationStart simulation_start(const Scene& scene, const ForceModelSettings& s
   if (discretisation.starts.size() == 1) {
     return {discretisation.rod, discretisation.starts.front(), std::nullopt};
   }
-  constexpr double nudge = 1e-3;
+  constexpr double perturbation = 1e-3;
   LowestPolygon lowest = lowest_polygon(scene, settings, discretisation, options);
   const Eigen::Matrix3Xd& rest = lowest.result.points;
   Eigen::Matrix3Xd points;
-  if (takes_twist(scene, settings)) {
-    points = lowest.untwisted + nearly_there * (rest - lowest.untwisted);
+  if (models_twist(scene, settings)) {
+    points = lowest.untwisted + start_fraction * (rest - lowest.untwisted);
   } else {
     const Eigen::Matrix3Xd& start = discretisation.starts[lowest.start];
-    points = start + nudge * (rest - start);
+    points = start + perturbation * (rest - start);
   }
   return {std::move(lowest.rod), std::move(points), std::move(lowest.result.points)};
 }
 
 /// Whether a simulation has come to rest farther from the chain's shape than the difference between
 /// the two laws explains.
-bool in_another_state(const Scene& scene, const Discretisation& discretisation,
-                      const Eigen::Matrix3Xd& points, const Eigen::Matrix3Xd& rest) {
-  constexpr double apart = 0.01;
-  return rms(discretisation.arc_length, points - rest) > apart * scene.length;
+bool came_to_other_equilibrium(const Scene& scene, const Discretisation& discretisation,
+                               const Eigen::Matrix3Xd& points, const Eigen::Matrix3Xd& rest) {
+  constexpr double least_difference = 0.01;
+  return rms(discretisation.arc_length, points - rest) > least_difference * scene.length;
 }
 
 using Simulate = std::function<force_model::Simulation(const force_model::Rod& rod,
                                                        const Eigen::Matrix3Xd& points)>;
 
 /// A simulation that has come to rest, and how it did.
-struct RestingRod {
+struct RelaxedRod {
   force_model::Simulation simulation;
   force_model::RelaxResult result;
 };
@@ -115,7 +115,7 @@ class FixedPoint {
 };
 
 /// A rod under drag: the rod without the drag, and how it is relaxed.
-struct DraggedRod {
+struct DragProblem {
   const Scene& scene;
   const std::vector<double>& arc_length;
   const force_model::Rod& dead;
@@ -128,11 +128,12 @@ struct DraggedRod {
 /// @param moves  displacement below which the iteration has converged [m]
 /// @param[in,out] steps  number of steps, added to
 /// @return std::nullopt if the iteration does not converge, or a simulation does not come to rest
-std::optional<RestingRod> rest_under(const DraggedRod& dragged, double share,
-                                     const Eigen::Matrix3Xd& begin, double moves, long& steps) {
+std::optional<RelaxedRod> relax_under_drag(const DragProblem& dragged, double share,
+                                           const Eigen::Matrix3Xd& begin, double moves,
+                                           long& steps) {
   constexpr int most_rounds = 25;
   // A larger displacement may lead to another branch.
-  const double farthest = 0.25 * dragged.scene.length;
+  const double largest_movement = 0.25 * dragged.scene.length;
   FixedPoint search;
   Eigen::Matrix3Xd shape = begin;  // on which the drag is frozen
   Eigen::Matrix3Xd rest = begin;
@@ -145,8 +146,8 @@ std::optional<RestingRod> rest_under(const DraggedRod& dragged, double share,
     if (result.status != force_model::RelaxStatus::at_rest) return std::nullopt;
     rest = simulation.points();
     const double moved = (rest - shape).colwise().norm().maxCoeff();
-    if (moved < moves) return RestingRod{std::move(simulation), result};
-    if (moved > farthest) return std::nullopt;
+    if (moved < moves) return RelaxedRod{std::move(simulation), result};
+    if (moved > largest_movement) return std::nullopt;
     const Eigen::VectorXd next = search.next(shape.reshaped(), rest.reshaped());
     shape = next.reshaped(3, rest.cols());
   }
@@ -156,21 +157,24 @@ std::optional<RestingRod> rest_under(const DraggedRod& dragged, double share,
 /// Continues the shape at rest without drag to the one under the full drag, by growing shares of
 /// the drag.
 /// @throws ConvergenceError if the share cannot grow to 1
-RestingRod raise_drag(const Scene& scene, const std::vector<double>& arc_length,
-                      const force_model::Simulation& unloaded,
-                      const force_model::RelaxOptions& limits, const Simulate& simulate) {
+RelaxedRod continue_to_full_drag(const Scene& scene, const std::vector<double>& arc_length,
+                                 const force_model::Simulation& unloaded,
+                                 const force_model::RelaxOptions& limits,
+                                 const Simulate& simulate) {
   constexpr double first_share = 0.25;
   constexpr double least_share = 0.02;  // a shorter step of the share ends the continuation
-  constexpr double on_the_way = 1e-3;   // tolerance before the full drag, divided by the length
-  const double at_the_end = 10 * limits.tolerance;
-  const DraggedRod dragged{scene, arc_length, unloaded.rod(), limits, simulate};
+  constexpr double partial_tolerance =
+      1e-3;  // tolerance before the full drag, divided by the length
+  const double final_tolerance = 10 * limits.tolerance;
+  const DragProblem dragged{scene, arc_length, unloaded.rod(), limits, simulate};
   Eigen::Matrix3Xd points = unloaded.points();
   double reached = 0;
   long steps = 0;
   for (double step = first_share; step > least_share;) {
     const double share = std::min(1.0, reached + step);
-    std::optional<RestingRod> rest = rest_under(
-        dragged, share, points, (share < 1 ? on_the_way : at_the_end) * scene.length, steps);
+    std::optional<RelaxedRod> rest =
+        relax_under_drag(dragged, share, points,
+                         (share < 1 ? partial_tolerance : final_tolerance) * scene.length, steps);
     if (!rest) {
       step /= 2;
       continue;
@@ -191,8 +195,8 @@ RestingRod raise_drag(const Scene& scene, const std::vector<double>& arc_length,
                   scene.file, reached));
 }
 
-std::string why_not_at_rest(const Scene& scene, const ForceModelSettings& settings,
-                            const Discretisation& discretisation, const RestingRod& moving) {
+std::string not_at_rest_message(const Scene& scene, const ForceModelSettings& settings,
+                                const Discretisation& discretisation, const RelaxedRod& moving) {
   return fmt::format(
       "{}: the force model did not come to rest: {} after {} steps, about {:.2g} m from it "
       "(stepper {}, c_F = {:.4g} m/N, c_c = {:.4g} N{})",
@@ -205,7 +209,7 @@ std::string why_not_at_rest(const Scene& scene, const ForceModelSettings& settin
 }
 
 /// Adds to a solution how the shape at rest was found.
-void add_rest(const RestingRod& rest, Solution& solution) {
+void add_relax_result(const RelaxedRod& rest, Solution& solution) {
   const force_model::Simulation& simulation = rest.simulation;
   solution.model = Model::force;
   solution.message = rest.result.message;
@@ -220,8 +224,8 @@ void add_rest(const RestingRod& rest, Solution& solution) {
 
 Solution solve_force(const Scene& scene, const ForceModelSettings& settings,
                      const SolveOptions& options) {
-  if (const std::optional<PlaneTurn> turn = turn_into_plane(scene, settings)) {
-    return turned_back(solve_force(turn->laid(scene), settings, options), *turn);
+  if (const std::optional<PlaneTransform> turn = plane_transform(scene, settings)) {
+    return solution_in_space(solve_force(turn->transformed(scene), settings, options), *turn);
   }
   const bool is_dragged = scene.drag && scene.drag->largest() > 0;
   Scene dead_scene = scene;
@@ -244,27 +248,29 @@ Solution solve_force(const Scene& scene, const ForceModelSettings& settings,
                                          .max_steps = options.max_steps,
                                          .time_limit = options.time_limit,
                                          .interrupted = energy_model::interrupted};
-  RestingRod rest{simulation_from(start.points), {}};
+  RelaxedRod rest{simulation_from(start.points), {}};
   rest.result = rest.simulation.relax(limits);
-  const auto strayed = [&] {
+  const auto has_switched = [&] {
     return rest.result.status == force_model::RelaxStatus::at_rest && start.rest &&
-           in_another_state(dead_scene, discretisation, rest.simulation.points(), *start.rest);
+           came_to_other_equilibrium(dead_scene, discretisation, rest.simulation.points(),
+                                     *start.rest);
   };
-  if (strayed()) {
+  if (has_switched()) {
     // The simulation went past the chain's equilibrium. It does not if it starts nine tenths of the
     // way to it.
     const long steps = rest.result.steps;
-    rest.simulation = simulation_from(start.points + nearly_there * (*start.rest - start.points));
+    rest.simulation = simulation_from(start.points + start_fraction * (*start.rest - start.points));
     rest.result = rest.simulation.relax(limits);
     rest.result.steps += steps;
   }
   if (rest.result.status != force_model::RelaxStatus::at_rest) {
-    throw ConvergenceError(why_not_at_rest(dead_scene, settings, discretisation, rest));
+    throw ConvergenceError(not_at_rest_message(dead_scene, settings, discretisation, rest));
   }
   const Eigen::Matrix3Xd dead_loads = rest.simulation.rod().loads;
   if (is_dragged) {
     const long steps = rest.result.steps;
-    rest = raise_drag(scene, discretisation.arc_length, rest.simulation, limits, simulate);
+    rest =
+        continue_to_full_drag(scene, discretisation.arc_length, rest.simulation, limits, simulate);
     rest.result.steps += steps;
   }
   require_unstrained(dead_scene, settings, discretisation, rest.simulation.points(), "force");
@@ -272,7 +278,7 @@ Solution solve_force(const Scene& scene, const ForceModelSettings& settings,
   rod.loads = dead_loads;  // drag has no energy
   Solution solution =
       polygon_solution(dead_scene, settings, discretisation, rod, rest.simulation.points());
-  add_rest(rest, solution);
+  add_relax_result(rest, solution);
   const force_model::Rod& resting = rest.simulation.rod();
   const Eigen::Matrix3Xd& points = rest.simulation.points();
   // Newton's step to rest bounds the imbalance only near rest, and not with the paper's law, whose
@@ -291,7 +297,7 @@ Solution solve_force(const Scene& scene, const ForceModelSettings& settings,
         ", forces and moments are balanced within {:.2g} of the largest", balance.share);
   }
   if (is_dragged) solution.status = energy_model::SolveStatus::not_verified;
-  if (!is_dragged && strayed()) solution.message += ", in another state than the chain";
+  if (!is_dragged && has_switched()) solution.message += ", in another state than the chain";
   solution.seconds = timer.seconds();
   return solution;
 }

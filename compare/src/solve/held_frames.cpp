@@ -30,7 +30,7 @@ Eigen::Vector3d rolled_d1(const energy_model::Problem& problem, const energy_mod
 
 std::vector<std::size_t> framed_grippers(const Scene& scene) {
   std::vector<std::size_t> framed;
-  for (const Gripper* gripper : grippers_along(scene)) {
+  for (const Gripper* gripper : grippers_by_arc_length(scene)) {
     if (!gripper->frame) continue;
     framed.push_back(static_cast<std::size_t>(gripper - scene.grippers.data()));
   }
@@ -49,11 +49,11 @@ force_model::TwistedSpan held_span(const energy_model::Problem& problem, std::si
                                 .first_d1 = energy_model::held_d1(problem, before),
                                 .last_d1 = energy_model::held_d1(problem, held),
                                 .compliance = 1};
-  const double ahead = force_model::twist_angle(span, points);
+  const double frame_angle = force_model::twist_angle(span, points);
   const std::optional<energy_model::Writhe> writhe = energy_model::writhe(
       points.middleCols(first_segment, last_segment - first_segment + 1), from, to);
-  span.angle = energy_model::turned_angle(energy_model::turns_between(problem, before, held), ahead,
-                                          0, writhe);
+  span.angle = energy_model::end_rotation(energy_model::prescribed_turns(problem, before, held),
+                                          frame_angle, 0, writhe);
   span.first_d1 = rolled_d1(problem, before, from);
   span.last_d1 = rolled_d1(problem, held, to);
   return span;
@@ -109,10 +109,12 @@ namespace {
 
 /// Returns the difference between the turns that the grips hold and those of a shape, an integer.
 /// Each passage of the rod through itself changes it by two.
-double turns_lost(const Linking& part) { return std::round(part.held - part.twist - part.writhe); }
+double missing_turns(const Linking& part) {
+  return std::round(part.held - part.twist - part.writhe);
+}
 
-std::string why_lost(const Linking& part) {
-  const bool odd = std::fmod(turns_lost(part), 2) != 0;
+std::string missing_turns_message(const Linking& part) {
+  const bool odd = std::fmod(missing_turns(part), 2) != 0;
   return formatted(
       "not verified: the grips hold {:.3f} turns from s = {:g} to {:g} m and the shape has "
       "{:.3f} (twist {:.3f}, writhe {:.3f}): {}",
@@ -133,7 +135,7 @@ Eigen::Vector3d shortest_axis(const Scene& scene, const Linking& part) {
 
 /// Whether the directions of a part's clamps are opposite at some time between two scenes: the axis
 /// of the shortest rotation then reverses.
-bool passes_opposite(const Scene& before, const Scene& after, const Linking& part) {
+bool directions_become_opposite(const Scene& before, const Scene& after, const Linking& part) {
   return shortest_axis(before, part).dot(shortest_axis(after, part)) < 0;
 }
 
@@ -162,7 +164,7 @@ std::vector<Linking> linking_of(const Scene& scene, const energy_model::Equilibr
                  .writhe_error = writhe->error};
     part.writhe = energy_model::nearest_writhe(*writhe, *held - part.twist);
     // A roll is counted from the twist of the rod without it.
-    if (!energy_model::turns_between(problem, **(last - 1), **last).turns) {
+    if (!energy_model::prescribed_turns(problem, **(last - 1), **last).turns) {
       *held += std::round(part.twist + part.writhe - *held);
     }
     part.held = *held;
@@ -171,21 +173,21 @@ std::vector<Linking> linking_of(const Scene& scene, const energy_model::Equilibr
   return parts;
 }
 
-std::string lost_turns(const std::vector<Linking>& parts) {
+std::string turns_mismatch_message(const std::vector<Linking>& parts) {
   for (const Linking& part : parts) {
-    if (turns_lost(part) != 0) return why_lost(part);
+    if (missing_turns(part) != 0) return missing_turns_message(part);
   }
   return {};
 }
 
-std::string lost_turns(const Scene& before, const std::vector<Linking>& parts_before,
-                       const Scene& after, const std::vector<Linking>& parts_after) {
+std::string turns_mismatch_message(const Scene& before, const std::vector<Linking>& parts_before,
+                                   const Scene& after, const std::vector<Linking>& parts_after) {
   for (const Linking& part : parts_after) {
     const auto was = std::ranges::find(parts_before, part.begin, &Linking::begin);
     if (was == parts_before.end()) continue;
-    const double lost = turns_lost(part) - turns_lost(*was);
-    const bool reverses = passes_opposite(before, after, part);
-    if (lost != 0 && !(reverses && std::abs(lost) == 1)) return why_lost(part);
+    const double lost = missing_turns(part) - missing_turns(*was);
+    const bool reverses = directions_become_opposite(before, after, part);
+    if (lost != 0 && !(reverses && std::abs(lost) == 1)) return missing_turns_message(part);
   }
   return {};
 }

@@ -53,13 +53,15 @@ void add_twisting_torques(const force_model::Rod& rod, const Eigen::Matrix3Xd& p
 
 /// Returns a message if a shape has other turns than the grips hold; empty if not, or if it cannot
 /// be determined.
-[[nodiscard]] std::string lost_turns(const std::vector<Linking>& parts);
+[[nodiscard]] std::string turns_mismatch_message(const std::vector<Linking>& parts);
 
 /// Returns a message if turns are lost between two shapes of a motion; empty if not. Held turns
 /// refer to the shortest rotation between the directions of two clamps. If one direction passes the
 /// opposite of the other, held turns and writhe change by one turn in opposite senses; this counts
 /// as no loss.
-[[nodiscard]] std::string lost_turns(const Scene& before, const std::vector<Linking>& parts_before,
-                                     const Scene& after, const std::vector<Linking>& parts_after);
+[[nodiscard]] std::string turns_mismatch_message(const Scene& before,
+                                                 const std::vector<Linking>& parts_before,
+                                                 const Scene& after,
+                                                 const std::vector<Linking>& parts_after);
 
 }  // namespace dlo::compare

@@ -27,24 +27,24 @@ constexpr double largest_joint_angle = 0.5;  // [rad]
 
 std::vector<PlannedSpan> spans_of(const Scene& scene) {
   std::vector<PlannedSpan> spans;
-  PlannedSpan span{.begin_held = "free"};
-  for (const Gripper* gripper : grippers_along(scene)) {
+  PlannedSpan span{.begin_support = "free"};
+  for (const Gripper* gripper : grippers_by_arc_length(scene)) {
     const std::string held = gripper->direction ? "clamp" : "pin";
     if (gripper->at == 0) {
-      span.begin_held = held;
+      span.begin_support = held;
     } else if (gripper->at == scene.length) {
-      span.end_held = held;
+      span.end_support = held;
     } else if (!gripper->direction) {
       ++span.inner_pins;
     } else {
       span.end = gripper->at;
-      span.end_held = held;
+      span.end_support = held;
       spans.push_back(span);
-      span = {.begin = gripper->at, .begin_held = held};
+      span = {.begin = gripper->at, .begin_support = held};
     }
   }
   span.end = scene.length;
-  if (span.end_held.empty()) span.end_held = "free";
+  if (span.end_support.empty()) span.end_support = "free";
   spans.push_back(span);
   return spans;
 }
@@ -54,7 +54,7 @@ std::vector<PlannedSpan> spans_of(const Scene& scene) {
 std::vector<PlannedTwist> twists_of(const Scene& scene) {
   std::vector<PlannedTwist> twists;
   const Gripper* before = nullptr;
-  for (const Gripper* gripper : grippers_along(scene)) {
+  for (const Gripper* gripper : grippers_by_arc_length(scene)) {
     if (!gripper->frame) continue;
     if (before != nullptr) {
       const bool by_directors = before->frame->d1 && gripper->frame->d1;
@@ -134,10 +134,11 @@ Neglected inertia(const Scene& scene, double speed) {
 }
 
 Neglected neglected_twist(const Scene& scene, const Plan& plan) {
-  if (scene.holds_twist()) {
+  if (scene.prescribes_twist()) {
     ForceModelSettings hooke = scene.force_model;
     hooke.law = BendingLaw::hooke;
-    return {"twist", takes_twist(scene, hooke) ? "chain, force with the law paper" : "chain, force",
+    return {"twist",
+            models_twist(scene, hooke) ? "chain, force with the law paper" : "chain, force",
             unbounded, "the grippers hold the rod's frame"};
   }
   if (!scene.has_material_directors()) {
@@ -157,7 +158,7 @@ Neglected neglected_natural(const Scene& scene) {
   hooke.law = BendingLaw::hooke;
   return {
       "natural curvature",
-      takes_natural_curvature(scene, hooke) ? "chain, force with the law paper" : "chain, force",
+      models_natural_curvature(scene, hooke) ? "chain, force with the law paper" : "chain, force",
       unbounded, "the rod is curved without loads"};
 }
 
@@ -168,8 +169,8 @@ Neglected neglected_friction(const Plan& plan) {
 }
 
 /// Sets the effect of neglecting something: the distance from the lowest shape without it.
-void look_at(const Scene& without, const energy_model::Equilibrium& rod, double time_limit,
-             Neglected& item) {
+void set_neglect_effect(const Scene& without, const energy_model::Equilibrium& rod,
+                        double time_limit, Neglected& item) {
   if (!(time_limit > 0)) return;
   std::string why;
   const std::optional<energy_model::Equilibrium> other = rod_shape(without, time_limit, why);
@@ -180,7 +181,7 @@ void look_at(const Scene& without, const energy_model::Equilibrium& rod, double 
 }
 
 /// Sets the twist that the rod takes up, for each part.
-void look_at_twist(const energy_model::Equilibrium& rod, Plan& plan) {
+void set_planned_twist(const energy_model::Equilibrium& rod, Plan& plan) {
   if (rod.twists.size() != plan.twist.size()) return;
   for (std::size_t i = 0; i < plan.twist.size(); ++i) plan.twist[i].twist = rod.twists[i].angle;
 }
@@ -231,7 +232,7 @@ void bound_by_response(const Scene& scene, const energy_model::Equilibrium& rod,
   const PolygonResponse response(scene, fine, rod);
   if (has_axial_stiffness(scene)) {
     const double EA = scene.axial_stiffness();
-    bounds.stretch.bound_m = bound_of_response(response.stretch(EA).moved_m, scene.length);
+    bounds.stretch.bound_m = bound_of_response(response.stretch(EA).displacement_m, scene.length);
     bounds.stretch.why = "response to the axial strain, tension over EA";
     bounds.shear.bound_m = bound_of_response(response.shear(0.3 * EA), scene.length);
     bounds.shear.why = "response to shear, transverse force over kGA, kG >= 0.3 E";
@@ -248,24 +249,24 @@ void bound_by_response(const Scene& scene, const energy_model::Equilibrium& rod,
 }
 
 /// Neglected effects that the shape of the rod determines.
-struct LookedAt {
+struct ShapeDependentItems {
   ShapeBounds& bounds;
   Neglected& twist;
   Neglected& natural;
 };
 
-void bound_by_shape(const Scene& scene, const PlanOptions& options, const LookedAt& items,
-                    Plan& plan) {
+void bound_by_shape(const Scene& scene, const PlanOptions& options,
+                    const ShapeDependentItems& items, Plan& plan) {
   const TimeLimit time(options.time_limit);
   std::string why;
   const std::optional<energy_model::Equilibrium> rod = rod_shape(scene, options.time_limit, why);
   plan.contact = !rod || touches(*rod);
   if (rod && !plan.twist.empty()) {
-    look_at_twist(*rod, plan);
-    look_at(scene.without_twist(), *rod, time.left(), items.twist);
+    set_planned_twist(*rod, plan);
+    set_neglect_effect(scene.without_twist(), *rod, time.left(), items.twist);
   }
   if (rod && scene.naturally_bent()) {
-    look_at(scene.without_natural_strain(), *rod, time.left(), items.natural);
+    set_neglect_effect(scene.without_natural_strain(), *rod, time.left(), items.natural);
   }
   const std::optional<Discretisation> fine = hooke_polygon(scene, rod_points);
   if (!rod) {
@@ -282,7 +283,7 @@ void bound_by_shape(const Scene& scene, const PlanOptions& options, const Looked
   }
 }
 
-void add_out_of_reach(Plan& plan) {
+void note_obstacles_out_of_reach(Plan& plan) {
   const auto all = plan.obstacles.size();
   const auto out = static_cast<std::size_t>(
       std::count_if(plan.obstacles.begin(), plan.obstacles.end(),
@@ -326,9 +327,9 @@ Plan make_plan(const Scene& scene, const PlanOptions& options) {
                     twist};
   if (!counted) plan.neglected.insert(plan.neglected.begin(), bounds.stretch);
   if (inextensible.naturally_bent()) plan.neglected.push_back(natural);
-  if (friction_in_reach(inextensible)) plan.neglected.push_back(neglected_friction(plan));
+  if (is_friction_in_reach(inextensible)) plan.neglected.push_back(neglected_friction(plan));
   plan.moving = plan.bound("inertia") > options.target * inextensible.length;
-  add_out_of_reach(plan);
+  note_obstacles_out_of_reach(plan);
   return plan;
 }
 

@@ -125,7 +125,7 @@ Solution polygon_solution(const Scene& scene, const ForceModelSettings& settings
       solution.obstacles[discretisation.solids[k]] += forces.col(i);
     }
   }
-  if (touches_with_friction(scene, solution.obstacles)) solution.neglected.emplace_back("friction");
+  if (has_friction_contact(scene, solution.obstacles)) solution.neglected.emplace_back("friction");
   return solution;
 }
 
@@ -160,13 +160,14 @@ double allowed_rest_imbalance(const force_model::Rod& rod, const Eigen::Matrix3X
   const Eigen::Matrix3Xd rest = points + to_rest;
   const std::vector<GripperLoad> grippers = gripper_loads(rod, points);
   const std::vector<energy_model::Action> here = actions_on(rod, points, grippers);
-  const std::vector<energy_model::Action> there = actions_on(rod, rest, gripper_loads(rod, rest));
+  const std::vector<energy_model::Action> rest_actions =
+      actions_on(rod, rest, gripper_loads(rod, rest));
   const Eigen::Vector3d& origin = here.front().point;
   double force = 0;
   double moment = 0;
   for (std::size_t i = 0; i < here.size(); ++i) {
-    force += (there[i].force - here[i].force).norm();
-    moment += (there[i].moment_about(origin) - here[i].moment_about(origin)).norm();
+    force += (rest_actions[i].force - here[i].force).norm();
+    moment += (rest_actions[i].moment_about(origin) - here[i].moment_about(origin)).norm();
   }
   const energy_model::Imbalance scale = polygon_imbalance(rod, points, grippers);
   return energy_model::allowed_imbalance +
@@ -235,7 +236,7 @@ LowestPolygon lowest_polygon(const Scene& scene, const ForceModelSettings& setti
   }
   require_unstrained(scene, settings, discretisation, lowest.result.points, "chain");
   lowest.rod = discretisation.rod;
-  if (!takes_twist(scene, settings)) return lowest;
+  if (!models_twist(scene, settings)) return lowest;
   lowest.untwisted = lowest.result.points;
   lowest.rod = with_frames(scene, discretisation, lowest.untwisted);
   polygon_options.time_limit = std::max(time.left(), options.time_limit / 4);

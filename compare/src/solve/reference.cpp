@@ -35,7 +35,7 @@ namespace {
 }
 
 /// Describes the searches for equilibria, for a message.
-std::string looked_from(const std::vector<energy_model::Equilibrium>& searches) {
+std::string searches_text(const std::vector<energy_model::Equilibrium>& searches) {
   if (searches.empty()) return "no initial guess to search from";
   return fmt::format("{} search{}, the first: {} after {} evaluations", searches.size(),
                      searches.size() == 1 ? "" : "es", searches.front().message,
@@ -51,7 +51,7 @@ bool is_balance_alone(const energy_model::Problem& problem,
 }
 
 /// Whether a shape may be returned: it is proven, or unproven results are accepted.
-bool acceptable(energy_model::SolveStatus status, const SolveOptions& options) {
+bool is_acceptable(energy_model::SolveStatus status, const SolveOptions& options) {
   return energy_model::succeeded(status) ||
          (options.accept_unverified && (status == energy_model::SolveStatus::not_verified ||
                                         status == energy_model::SolveStatus::near_singular));
@@ -59,9 +59,9 @@ bool acceptable(energy_model::SolveStatus status, const SolveOptions& options) {
 
 /// Sets the status of an equilibrium with other turns than the grips hold to not_verified: it is an
 /// equilibrium of another scene.
-void refuse_lost_turns(const Scene& scene, energy_model::Equilibrium& equilibrium) {
+void mark_lost_turns(const Scene& scene, energy_model::Equilibrium& equilibrium) {
   if (!energy_model::succeeded(equilibrium.status)) return;
-  std::string lost = lost_turns(linking_of(scene, equilibrium));
+  std::string lost = turns_mismatch_message(linking_of(scene, equilibrium));
   if (lost.empty()) return;
   equilibrium.status = energy_model::SolveStatus::not_verified;
   equilibrium.message = std::move(lost);
@@ -80,11 +80,11 @@ std::optional<energy_model::Equilibrium> stretched_shape(const Scene& scene,
   energy_model::Problem rigid = problem;
   rigid.axial_stiffness.reset();
   try {
-    const energy_model::Equilibrium told =
+    const energy_model::Equilibrium unstretched =
         energy_model::solve_energy(rigid, {.time_limit = exact.time_limit / 2});
-    if (!energy_model::succeeded(told.status)) return std::nullopt;
+    if (!energy_model::succeeded(unstretched.status)) return std::nullopt;
     energy_model::ExactOptions from = exact;
-    from.start = &told;
+    from.start = &unstretched;
     from.time_limit = exact.time_limit / 2;
     energy_model::Equilibrium result = energy_model::solve_exact(problem, from);
     if (!energy_model::succeeded(result.status)) return std::nullopt;
@@ -101,7 +101,9 @@ std::optional<energy_model::Equilibrium> stretched_shape(const Scene& scene,
 energy_model::Equilibrium exact_shape(const Scene& scene, const energy_model::Problem& problem,
                                       const SolveOptions& options) {
   const TimeLimit limit(options.time_limit);
-  const auto left = [&] { return std::max(limit.left(), std::numeric_limits<double>::min()); };
+  const auto remaining_time = [&] {
+    return std::max(limit.left(), std::numeric_limits<double>::min());
+  };
   energy_model::ExactOptions exact{.time_limit = options.time_limit};
   if (problem.axial_stiffness && options.start != nullptr) {
     exact.start = options.start;
@@ -116,7 +118,7 @@ energy_model::Equilibrium exact_shape(const Scene& scene, const energy_model::Pr
       [](const energy_model::Obstacle& obstacle) { return std::isfinite(obstacle.stiffness); });
   if (problem.obstacles.empty() || yields) return energy_model::solve_exact(problem, exact);
   const energy_model::Equilibrium detected =
-      energy_model::solve_energy(problem, {.time_limit = left()});
+      energy_model::solve_energy(problem, {.time_limit = remaining_time()});
   if (!energy_model::succeeded(detected.status)) {
     throw ConvergenceError(
         fmt::format("{}: the energy model, which detects the contacts that exact confirms, did not "
@@ -124,7 +126,7 @@ energy_model::Equilibrium exact_shape(const Scene& scene, const energy_model::Pr
                     scene.file, detected.message));
   }
   exact.start = &detected;
-  exact.time_limit = left();
+  exact.time_limit = remaining_time();
   energy_model::Equilibrium confirmed = energy_model::solve_exact(problem, exact);
   confirmed.message += ", with the contacts that the energy model detected";
   return confirmed;
@@ -199,8 +201,8 @@ energy_model::Equilibrium solve_reference(const Scene& scene, Model model,
     refuse_rod(scene, model, error);
   }
   if (model == Model::exact) refuse_stretch_beside_obstacles(scene, &result);
-  refuse_lost_turns(scene, result);
-  if (!acceptable(result.status, options) && !is_balance_alone(problem, result)) {
+  mark_lost_turns(scene, result);
+  if (!is_acceptable(result.status, options) && !is_balance_alone(problem, result)) {
     throw ConvergenceError(fmt::format(
         "{}: the {} model did not converge: {} ({} evaluations{}{})", scene.file, to_string(model),
         result.message, result.evaluations,
@@ -227,14 +229,15 @@ energy_model::EnergySearch search_states(const Scene& scene, const SolveOptions&
   } catch (const std::invalid_argument& error) {
     refuse_rod(scene, Model::energy, error);
   }
-  for (energy_model::Equilibrium& state : states) refuse_lost_turns(scene, state);
-  const std::string looked = looked_from(states);
+  for (energy_model::Equilibrium& state : states) mark_lost_turns(scene, state);
+  const std::string search_summary = searches_text(states);
   std::erase_if(states, [&](const energy_model::Equilibrium& state) {
-    return !acceptable(state.status, options) && state.status != energy_model::SolveStatus::saddle;
+    return !is_acceptable(state.status, options) &&
+           state.status != energy_model::SolveStatus::saddle;
   });
   if (states.empty()) {
     throw ConvergenceError(
-        fmt::format("{}: the energy model found no equilibrium ({})", scene.file, looked));
+        fmt::format("{}: the energy model found no equilibrium ({})", scene.file, search_summary));
   }
   return search;
 }
@@ -249,7 +252,7 @@ energy_model::Equilibrium reference_near(const Scene& scene, const Shape& shape,
                                   {.terms = options.terms,
                                    .max_evaluations = options.max_evaluations,
                                    .time_limit = options.time_limit});
-    refuse_lost_turns(scene, near);
+    mark_lost_turns(scene, near);
     return near;
   } catch (const std::invalid_argument& error) {
     refuse_rod(scene, Model::energy, error);

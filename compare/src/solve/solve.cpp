@@ -67,8 +67,9 @@ std::vector<double> all_on_rod(std::vector<double> arc_lengths, double length) {
 }
 
 /// Returns solution_of() with the effect of stretch.
-Solution told_solution(const StretchedRod& of, Model model, const std::vector<double>& arc_lengths,
-                       const std::vector<std::size_t>& obstacles) {
+Solution solution_with_stretch_effect(const StretchedRod& of, Model model,
+                                      const std::vector<double>& arc_lengths,
+                                      const std::vector<std::size_t>& obstacles) {
   Solution solution = solution_of(of.scene, model, of.rod, arc_lengths, obstacles);
   solution.stretch = of.effect;
   solution.stretch_decision = of.decision;
@@ -103,28 +104,28 @@ Solution solution_of(const Scene& scene, Model model, const energy_model::Equili
   for (const energy_model::Reaction& reaction : equilibrium.grips) {
     solution.grippers.push_back({reaction.force, reaction.torque});
   }
-  solution.obstacles = forces_of_all(scene, obstacles, equilibrium.obstacles);
+  solution.obstacles = expand_obstacle_forces(scene, obstacles, equilibrium.obstacles);
   solution.twists = equilibrium.twists;
   solution.linking = linking_of(scene, equilibrium);
-  if (scene.holds_twist() && solution.twists.empty()) solution.neglected = {"twist"};
-  if (touches_with_friction(scene, solution.obstacles)) solution.neglected.emplace_back("friction");
+  if (scene.prescribes_twist() && solution.twists.empty()) solution.neglected = {"twist"};
+  if (has_friction_contact(scene, solution.obstacles)) solution.neglected.emplace_back("friction");
   solution.contacts = equilibrium.contacts;
   for (energy_model::ContactPart& contact : solution.contacts) {
     contact.obstacle = obstacles[contact.obstacle];
   }
   const std::vector<Eigen::Vector3d> of_shape = shape_loads_before(scene, equilibrium, samples);
-  const bool sinks_in = touches_yielding_obstacle(scene, solution.obstacles);
+  const bool deforms = touches_yielding_obstacle(scene, solution.obstacles);
   for (std::size_t i = 0; i < samples.size(); ++i) {
     const auto column = static_cast<Eigen::Index>(i);
     solution.curvature.push_back(shape.curvature.col(column).norm());
-    if (sinks_in) continue;
+    if (deforms) continue;
     const Eigen::Vector3d force = section_force(scene, solution, samples[i], of_shape[i]);
     // Adding zero replaces -0 by 0.
     solution.tension.push_back(force.dot(shape.tangents.col(column)) + 0.0);
   }
   solution.smallest_eigenvalue = equilibrium.smallest_eigenvalue;
   solution.stable_energies = equilibrium.stable_energies;
-  solution.passing_starts = equilibrium.passing_starts;
+  solution.other_side_starts = equilibrium.other_side_starts;
   solution.neutral_directions = equilibrium.neutral_directions;
   solution.evaluations = equilibrium.evaluations;
   solution.terms = equilibrium.terms;
@@ -135,8 +136,8 @@ Solution solution_of(const Scene& scene, Model model, const energy_model::Equili
 Solution solve(const Scene& scene, Model model, const SolveOptions& options,
                const std::vector<double>& arc_lengths) {
   if (model == Model::energy || model == Model::exact) {
-    return told_solution(decide_stretch(scene, model, options), model, arc_lengths,
-                         obstacles_in_reach(scene));
+    return solution_with_stretch_effect(decide_stretch(scene, model, options), model, arc_lengths,
+                                        obstacles_in_reach(scene));
   }
   Solution solution = model == Model::chain ? solve_chain(scene, scene.force_model, options)
                                             : solve_force(scene, scene.force_model, options);
@@ -153,7 +154,7 @@ Solution solve_near(const Scene& scene, const MeasuredShape& shape, const SolveO
                     const std::vector<double>& arc_lengths) {
   const ArcLengths rule = arc_length_rule(shape, ArcLengths::automatic);
   const energy_model::Equilibrium near =
-      reference_near(scene, laid_by_grippers(shape, scene, rule), options);
+      reference_near(scene, aligned_by_grippers(shape, scene, rule), options);
   using energy_model::SolveStatus;
   const bool shown = near.status == SolveStatus::saddle ||
                      near.status == SolveStatus::near_singular ||
@@ -163,8 +164,8 @@ Solution solve_near(const Scene& scene, const MeasuredShape& shape, const SolveO
         fmt::format("{}: the energy model found no equilibrium near {}: {} ({} evaluations)",
                     scene.file, shape.file, near.message, near.evaluations));
   }
-  return told_solution(told_of_stretch(scene, Model::energy, near, options), Model::energy,
-                       arc_lengths, obstacles_in_reach(scene));
+  return solution_with_stretch_effect(with_stretch_effect(scene, Model::energy, near, options),
+                                      Model::energy, arc_lengths, obstacles_in_reach(scene));
 }
 
 AllSolutions solve_all(const Scene& scene, const SolveOptions& options,
@@ -175,8 +176,9 @@ AllSolutions solve_all(const Scene& scene, const SolveOptions& options,
   all.omitted = std::move(search.omitted);
   const std::vector<std::size_t> obstacles = obstacles_in_reach(scene);
   for (const energy_model::Equilibrium& state : search.equilibria) {
-    all.solutions.push_back(told_solution(told_of_stretch(scene, Model::energy, state, options),
-                                          Model::energy, arc_lengths, obstacles));
+    all.solutions.push_back(
+        solution_with_stretch_effect(with_stretch_effect(scene, Model::energy, state, options),
+                                     Model::energy, arc_lengths, obstacles));
   }
   return all;
 }

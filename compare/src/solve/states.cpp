@@ -50,14 +50,14 @@ Equilibrium mirrored(const Scene& scene, const Equilibrium& state, const Eigen::
   // Direction of d1 at the first clamp, if the shape has directors.
   double a = 0;
   double b = 1;
-  const std::vector<const Gripper*> along = grippers_along(scene);
+  const std::vector<const Gripper*> along = grippers_by_arc_length(scene);
   const auto clamp = std::find_if(along.begin(), along.end(),
                                   [](const Gripper* gripper) { return gripper->direction; });
   if (clamp != along.end()) {
-    const energy_model::Samples held = state.sample(std::vector<double>{(*clamp)->at});
-    if (held.d1.cols() > 0) {
-      a = normal.dot(held.d1.col(0));
-      b = held.tangents.col(0).cross(normal).dot(held.d1.col(0));
+    const energy_model::Samples clamp_sample = state.sample(std::vector<double>{(*clamp)->at});
+    if (clamp_sample.d1.cols() > 0) {
+      a = normal.dot(clamp_sample.d1.col(0));
+      b = clamp_sample.tangents.col(0).cross(normal).dot(clamp_sample.d1.col(0));
     }
   }
   result.sample = [mirror, origin, a, b, sample = state.sample](std::span<const double> s) {
@@ -85,7 +85,7 @@ Equilibrium mirrored(const Scene& scene, const Equilibrium& state, const Eigen::
 }
 
 /// Whether a state precedes another in the order of states: stable ones first, then by energy.
-bool comes_before(const Equilibrium& a, const Equilibrium& b) {
+bool precedes(const Equilibrium& a, const Equilibrium& b) {
   const bool a_stable = is_stable(a);
   const bool b_stable = is_stable(b);
   if (a_stable != b_stable) return a_stable;
@@ -94,8 +94,8 @@ bool comes_before(const Equilibrium& a, const Equilibrium& b) {
 
 }  // namespace
 
-std::vector<Equilibrium> all_states(const Scene& scene, const Equilibrium& lowest,
-                                    const SolveOptions& options) {
+std::vector<Equilibrium> all_equilibria(const Scene& scene, const Equilibrium& lowest,
+                                        const SolveOptions& options) {
   std::vector<Equilibrium> states;
   try {
     if (reference_model(scene) == Model::energy) states = reference_states(scene, options);
@@ -104,7 +104,7 @@ std::vector<Equilibrium> all_states(const Scene& scene, const Equilibrium& lowes
   }
   const auto find = [&](const Equilibrium& state) {
     return std::find_if(states.begin(), states.end(), [&](const Equilibrium& other) {
-      return shapes_apart(scene, state, other) < same_shape * scene.length;
+      return shapes_apart(scene, state, other) < same_shape_tolerance * scene.length;
     });
   };
   // `lowest` replaces the state found again, because solve() computed it with all digits.
@@ -121,32 +121,32 @@ std::vector<Equilibrium> all_states(const Scene& scene, const Equilibrium& lowes
       if (find(image) == states.end()) states.push_back(std::move(image));
     }
   }
-  std::stable_sort(states.begin(), states.end(), comes_before);
+  std::stable_sort(states.begin(), states.end(), precedes);
   return states;
 }
 
-std::optional<Equilibrium> state_near(const Scene& scene, const Shape& shape,
-                                      const SolveOptions& options) {
+std::optional<Equilibrium> equilibrium_near(const Scene& scene, const Shape& shape,
+                                            const SolveOptions& options) {
   if (shape.arc_length.size() < 2 || reference_model(scene) != Model::energy) return std::nullopt;
   return reference_near(scene, shape, options);
 }
 
-std::optional<std::size_t> add_state(const Scene& scene, Equilibrium state,
-                                     std::vector<Equilibrium>& states) {
+std::optional<std::size_t> insert_equilibrium(const Scene& scene, Equilibrium state,
+                                              std::vector<Equilibrium>& states) {
   if (!succeeded(state.status)) return std::nullopt;
   const bool known = std::any_of(states.begin(), states.end(), [&](const Equilibrium& other) {
-    return shapes_apart(scene, state, other) < same_shape * scene.length;
+    return shapes_apart(scene, state, other) < same_shape_tolerance * scene.length;
   });
   if (known) return std::nullopt;
-  const auto at = std::upper_bound(states.begin(), states.end(), state, comes_before);
+  const auto at = std::upper_bound(states.begin(), states.end(), state, precedes);
   const auto index = static_cast<std::size_t>(at - states.begin());
   states.insert(at, std::move(state));
   return index;
 }
 
-ComparedState describe_state(const Scene& scene, const std::vector<Equilibrium>& states,
-                             std::size_t compared, const std::vector<double>& from_shape) {
-  ComparedState result;
+ComparedEquilibrium describe_state(const Scene& scene, const std::vector<Equilibrium>& states,
+                                   std::size_t compared, const std::vector<double>& from_shape) {
+  ComparedEquilibrium result;
   result.searched = reference_model(scene) == Model::energy;
   result.energy_J = states[compared].energy.total();
   result.rms_from_shape_m = from_shape[compared];
@@ -167,10 +167,10 @@ ComparedState describe_state(const Scene& scene, const std::vector<Equilibrium>&
   return result;
 }
 
-Solution turned_back(Solution solution, const PlaneTurn& turn) {
-  const auto back = [&turn](Eigen::Vector3d& vector) { vector = turn.vectors_back(vector); };
-  solution.shape.points = turn.points_back(solution.shape.points);
-  if (solution.to_rest.cols() > 0) solution.to_rest = turn.vectors_back(solution.to_rest);
+Solution solution_in_space(Solution solution, const PlaneTransform& turn) {
+  const auto back = [&turn](Eigen::Vector3d& vector) { vector = turn.vectors_to_space(vector); };
+  solution.shape.points = turn.points_to_space(solution.shape.points);
+  if (solution.to_rest.cols() > 0) solution.to_rest = turn.vectors_to_space(solution.to_rest);
   for (GripperLoad& load : solution.grippers) {
     back(load.force);
     back(load.torque);

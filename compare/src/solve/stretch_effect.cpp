@@ -19,8 +19,8 @@ namespace {
 
 /// Returns an upper bound of the force in any cross-section [N]: half the sum of all forces, since
 /// the forces on both sides of a section balance.
-double most_force(const Scene& scene, const energy_model::Equilibrium& rod) {
-  double all = scene.weight_per_length().norm() * scene.length + scene.total_of_loads();
+double largest_force_bound(const Scene& scene, const energy_model::Equilibrium& rod) {
+  double all = scene.weight_per_length().norm() * scene.length + scene.total_load_magnitude();
   for (const energy_model::Reaction& grip : rod.grips) all += grip.force.norm();
   for (const Eigen::Vector3d& force : rod.obstacles) all += force.norm();
   return all / 2;
@@ -28,8 +28,8 @@ double most_force(const Scene& scene, const energy_model::Equilibrium& rod) {
 
 /// Returns the smallest slack between two neighbouring grips, as a share of the rod between them; 1
 /// with a single grip.
-double least_slack(const Scene& scene) {
-  const std::vector<const Gripper*> along = grippers_along(scene);
+double smallest_slack(const Scene& scene) {
+  const std::vector<const Gripper*> along = grippers_by_arc_length(scene);
   double least = 1;
   for (std::size_t i = 0; i + 1 < along.size(); ++i) {
     const double rod = along[i + 1]->at - along[i]->at;
@@ -44,7 +44,7 @@ bool touches_any(const energy_model::Equilibrium& rod) {
                      [](const Eigen::Vector3d& force) { return force.norm() > 0; });
 }
 
-double largest_size(const std::vector<double>& values) {
+double largest_magnitude(const std::vector<double>& values) {
   double largest = 0;
   for (const double value : values) largest = std::max(largest, std::abs(value));
   return largest;
@@ -53,13 +53,13 @@ double largest_size(const std::vector<double>& values) {
 /// Estimates the effect by the lowest shape of a rod that is longer by the mean strain, with the
 /// same weight and EI.
 /// @param own  solution of the rod, with tensions at equally spaced arc lengths
-void look_at_longer_rod(const Scene& scene, const Solution& own, double EA,
-                        const SolveOptions& options, StretchEffect& effect) {
+void estimate_by_longer_rod(const Scene& scene, const Solution& solution, double EA,
+                            const SolveOptions& options, StretchEffect& effect) {
   double mean = 0;
-  for (std::size_t i = 1; i < own.tension.size(); ++i) {
-    mean += (own.tension[i - 1] + own.tension[i]) / (2 * EA);
+  for (std::size_t i = 1; i < solution.tension.size(); ++i) {
+    mean += (solution.tension[i - 1] + solution.tension[i]) / (2 * EA);
   }
-  mean /= static_cast<double>(own.tension.size() - 1);
+  mean /= static_cast<double>(solution.tension.size() - 1);
   Scene longer = scene;
   scale_length(longer, 1 + mean);
   longer.scale_density(1 / (1 + mean));
@@ -72,9 +72,10 @@ void look_at_longer_rod(const Scene& scene, const Solution& own, double EA,
     const Solution other =
         solution_of(longer, Model::energy, solve_reference(longer, Model::energy, anew),
                     equal_arc_lengths(longer.length, rod_points), obstacles_in_reach(longer));
-    effect.moved_m = rms(own.shape.arc_length, other.shape.points - own.shape.points);
-    const double before = largest_size(own.tension);
-    effect.tension = largest_size(other.tension) / before - 1;
+    effect.displacement_m =
+        rms(solution.shape.arc_length, other.shape.points - solution.shape.points);
+    const double before = largest_magnitude(solution.tension);
+    effect.tension = largest_magnitude(other.tension) / before - 1;
   } catch (const ConvergenceError&) {
     // The effect remains unknown.
   } catch (const InputError&) {
@@ -83,14 +84,14 @@ void look_at_longer_rod(const Scene& scene, const Solution& own, double EA,
 }
 
 /// Smallest slack for which the effect is estimated [-].
-constexpr double taut = 1e-9;
+constexpr double least_estimated_slack = 1e-9;
 
-bool matters(const StretchEffect& effect, const Scene& scene, const SolveOptions& options) {
-  if (std::isnan(effect.moved_m)) {
+bool stretch_matters(const StretchEffect& effect, const Scene& scene, const SolveOptions& options) {
+  if (std::isnan(effect.displacement_m)) {
     // The tension of a line that sags only by its slack decreases by this share.
-    return effect.strain / (2 * least_slack(scene)) > options.target;
+    return effect.strain / (2 * smallest_slack(scene)) > options.target;
   }
-  return effect.moved_m > options.target * scene.length ||
+  return effect.displacement_m > options.target * scene.length ||
          std::abs(effect.tension) > options.target;
 }
 
@@ -112,46 +113,47 @@ StretchEffect stretch_effect(const Scene& scene, Model model, const energy_model
   StretchEffect effect;
   const std::optional<double> EA = scene.known_axial_stiffness();
   if (!EA || !rod.sample) return effect;
-  const double slack = least_slack(scene);
-  if (!(slack > taut)) return effect;
-  if (!(most_force(scene, rod) / *EA * (1 + 1 / slack) > options.target)) return effect;
-  const Solution own = solution_of(scene, model, rod, equal_arc_lengths(scene.length, rod_points),
-                                   obstacles_in_reach(scene));
-  if (own.tension.empty()) return effect;
-  effect.strain = largest_size(own.tension) / *EA;
+  const double slack = smallest_slack(scene);
+  if (!(slack > least_estimated_slack)) return effect;
+  if (!(largest_force_bound(scene, rod) / *EA * (1 + 1 / slack) > options.target)) return effect;
+  const Solution solution = solution_of(
+      scene, model, rod, equal_arc_lengths(scene.length, rod_points), obstacles_in_reach(scene));
+  if (solution.tension.empty()) return effect;
+  effect.strain = largest_magnitude(solution.tension) / *EA;
   if (!(effect.strain * (1 + 1 / slack) > options.target)) return effect;
   if (!touches_any(rod) && why_no_polygon(scene).empty()) {
     if (const std::optional<Discretisation> fine = hooke_polygon(scene, rod_points)) {
       const StretchResponse response = PolygonResponse(scene, *fine, rod).stretch(*EA);
-      if (std::isfinite(response.moved_m)) {
-        effect.moved_m = response.moved_m;
+      if (std::isfinite(response.displacement_m)) {
+        effect.displacement_m = response.displacement_m;
         effect.tension = response.tension;
         return effect;
       }
     }
   }
-  look_at_longer_rod(scene, own, *EA, options, effect);
+  estimate_by_longer_rod(scene, solution, *EA, options, effect);
   // A larger displacement means that the search found another equilibrium.
   constexpr double another = 10;
-  if (effect.moved_m > another * effect.strain * (1 + 1 / slack) * scene.length) {
-    effect.moved_m = effect.tension = std::numeric_limits<double>::quiet_NaN();
+  if (effect.displacement_m > another * effect.strain * (1 + 1 / slack) * scene.length) {
+    effect.displacement_m = effect.tension = std::numeric_limits<double>::quiet_NaN();
   }
   return effect;
 }
 
-StretchedRod told_of_stretch(const Scene& scene, Model model, const energy_model::Equilibrium& rod,
-                             const SolveOptions& options) {
-  StretchedRod told{.scene = scene, .rod = rod};
-  told.scene.stretch = Stretch::none;
-  told.effect = stretch_effect(told.scene, model, rod, options);
+StretchedRod with_stretch_effect(const Scene& scene, Model model,
+                                 const energy_model::Equilibrium& rod,
+                                 const SolveOptions& options) {
+  StretchedRod result{.scene = scene, .rod = rod};
+  result.scene.stretch = Stretch::none;
+  result.effect = stretch_effect(result.scene, model, rod, options);
   const bool decides = scene.stretch == Stretch::automatic;
-  told.neglects_stretch =
-      matters(told.effect, scene, options) || (decides && !(least_slack(scene) > taut));
+  result.neglects_stretch = stretch_matters(result.effect, scene, options) ||
+                            (decides && !(smallest_slack(scene) > least_estimated_slack));
   if (decides) {
-    told.decision =
-        told.neglects_stretch ? StretchDecision::not_modelled : StretchDecision::below_target;
+    result.decision =
+        result.neglects_stretch ? StretchDecision::not_modelled : StretchDecision::below_target;
   }
-  return told;
+  return result;
 }
 
 StretchedRod decide_stretch(const Scene& scene, Model model, const SolveOptions& options) {
@@ -160,8 +162,8 @@ StretchedRod decide_stretch(const Scene& scene, Model model, const SolveOptions&
   }
   Scene stretched = scene;
   stretched.stretch = Stretch::counted;
-  const bool may_count = scene.stretch == Stretch::automatic && model == Model::exact;
-  if (may_count && !(least_slack(scene) > taut)) {
+  const bool may_include_stretch = scene.stretch == Stretch::automatic && model == Model::exact;
+  if (may_include_stretch && !(smallest_slack(scene) > least_estimated_slack)) {
     // Without stretch the rod may not reach its grips, so it is not solved first.
     return {.scene = stretched,
             .rod = solve_reference(stretched, model, options),
@@ -169,16 +171,16 @@ StretchedRod decide_stretch(const Scene& scene, Model model, const SolveOptions&
   }
   Scene rigid = scene;
   rigid.stretch = Stretch::none;
-  StretchedRod told =
-      told_of_stretch(scene, model, solve_reference(rigid, model, options), options);
-  if (!may_count || !told.neglects_stretch) return told;
+  StretchedRod result =
+      with_stretch_effect(scene, model, solve_reference(rigid, model, options), options);
+  if (!may_include_stretch || !result.neglects_stretch) return result;
   if (std::optional<energy_model::Equilibrium> rod = exact_with_stretch(stretched, options)) {
-    told.scene = stretched;
-    told.rod = *std::move(rod);
-    told.neglects_stretch = false;
-    told.decision = StretchDecision::counted;
+    result.scene = stretched;
+    result.rod = *std::move(rod);
+    result.neglects_stretch = false;
+    result.decision = StretchDecision::counted;
   }
-  return told;
+  return result;
 }
 
 }  // namespace dlo::compare

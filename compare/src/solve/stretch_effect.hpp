@@ -28,9 +28,9 @@ struct StretchedRod {
 /// matters if its effect exceeds the options' target, or is unknown and may exceed it, or if the
 /// scene has Stretch::automatic and grips hold the rod taut, so that its tension depends on EA
 /// alone.
-[[nodiscard]] StretchedRod told_of_stretch(const Scene& scene, Model model,
-                                           const energy_model::Equilibrium& rod,
-                                           const SolveOptions& options);
+[[nodiscard]] StretchedRod with_stretch_effect(const Scene& scene, Model model,
+                                               const energy_model::Equilibrium& rod,
+                                               const SolveOptions& options);
 
 /// Solves a scene as solve_reference(), and decides Stretch::automatic: the shape without stretch
 /// is solved, and the shape with stretch if stretch matters and the model has it. No other function

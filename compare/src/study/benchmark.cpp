@@ -48,12 +48,13 @@ struct Frames {
 /// Returns the scene with its grippers at the end of a frame: moved along +x and rotated about z as
 /// one body. The rotation changes the shape, the translation does not.
 Scene moved(const Scene& scene, const BenchmarkOptions& options, int frame) {
-  const double way = (frame + 1) * frame_s * options.gripper_speed;
-  const Eigen::AngleAxisd turn(way / scene.length, Eigen::Vector3d::UnitZ());
+  const double distance = (frame + 1) * frame_s * options.gripper_speed;
+  const Eigen::AngleAxisd turn(distance / scene.length, Eigen::Vector3d::UnitZ());
   const Eigen::Vector3d origin = scene.grippers.front().position;
   Scene result = scene;
   for (Gripper& gripper : result.grippers) {
-    gripper.position = origin + way * Eigen::Vector3d::UnitX() + turn * (gripper.position - origin);
+    gripper.position =
+        origin + distance * Eigen::Vector3d::UnitX() + turn * (gripper.position - origin);
     if (gripper.direction) gripper.direction = (turn * *gripper.direction).normalized();
     if (gripper.frame && gripper.frame->d1) gripper.frame->d1 = turn * *gripper.frame->d1;
   }
@@ -65,14 +66,15 @@ struct ReferenceTrack {
   static constexpr int stride = 10;
   std::vector<energy_model::Equilibrium> rods;
 
-  [[nodiscard]] static bool looks_at(int frame) { return frame % stride == 0; }
+  [[nodiscard]] static bool is_sampled(int frame) { return frame % stride == 0; }
   [[nodiscard]] double square_error(const Scene& scene, const Shape& shape, int frame) const {
     const energy_model::Equilibrium& rod = rods[static_cast<std::size_t>(frame / stride)];
     return std::pow(distance(shape, rod.sample) / scene.length, 2);
   }
 };
 
-ReferenceTrack track_of(const Scene& scene, Model model, const BenchmarkOptions& options) {
+ReferenceTrack make_reference_track(const Scene& scene, Model model,
+                                    const BenchmarkOptions& options) {
   ReferenceTrack track;
   for (int frame = 0; frame < options.frames; frame += ReferenceTrack::stride) {
     track.rods.push_back(solve_reference(moved(scene, options, frame), model));
@@ -94,7 +96,7 @@ BenchmarkRun track_energy(const Scene& scene, int terms, const ReferenceTrack& t
     const Eigen::Matrix3Xd points = rod.sample(s).points;
     frames.seconds.push_back(timer.seconds());
     frames.evaluations += rod.evaluations;
-    if (ReferenceTrack::looks_at(frame)) {
+    if (ReferenceTrack::is_sampled(frame)) {
       frames.add_error(track.square_error(scene, {s, points}, frame));
     }
   }
@@ -140,7 +142,7 @@ BenchmarkRun track_force(const Scene& scene, const ForceVariant& variant, int po
     for (long i = 0; i < steps; ++i) (void)simulation.step();
     frames.seconds.push_back(timer.seconds());
     frames.evaluations += steps;
-    if (ReferenceTrack::looks_at(frame)) {
+    if (ReferenceTrack::is_sampled(frame)) {
       frames.add_error(track.square_error(scene, now.shape(simulation.points()), frame));
     }
   }
@@ -155,7 +157,7 @@ std::vector<BenchmarkRun> tracking_runs(const Scene& scene, const ReferenceShape
   ReferenceTrack track;
   const double predicted_track =
       reference.rod.seconds * options.frames / static_cast<double>(ReferenceTrack::stride);
-  const auto find = [&] { track = track_of(scene, reference.model, options); };
+  const auto find = [&] { track = make_reference_track(scene, reference.model, options); };
   if (!watch.run_once(scene.name + ": tracking, reference", predicted_track, find)) return runs;
   const auto add = [&](const std::string& name, double predicted, std::vector<BenchmarkRun>& to,
                        const std::function<BenchmarkRun()>& work) {
@@ -246,14 +248,15 @@ std::string setting_of(const BenchmarkRun& run) {
 
 std::string name_of(const BenchmarkRun& run) {
   std::string name = model_of(run);
-  const bool ours = run.program.empty();
-  if (ours && run.model == Model::energy && run.size > 0) name += fmt::format(" K = {}", run.size);
-  if (!ours || run.variant) name += fmt::format(" N = {}", run.size);
+  const bool is_dlo = run.program.empty();
+  if (is_dlo && run.model == Model::energy && run.size > 0)
+    name += fmt::format(" K = {}", run.size);
+  if (!is_dlo || run.variant) name += fmt::format(" N = {}", run.size);
   const std::string setting = setting_of(run);
   return setting.empty() ? name : name + ", " + setting;
 }
 
-void mark_front(std::vector<BenchmarkRun>& runs) {
+void mark_pareto_front(std::vector<BenchmarkRun>& runs) {
   for (BenchmarkRun& run : runs) {
     run.front = std::none_of(runs.begin(), runs.end(), [&](const BenchmarkRun& other) {
       const bool no_worse =
@@ -318,8 +321,8 @@ BenchmarkReport run_benchmark(const std::vector<Scene>& scenes, const BenchmarkO
     const std::vector<BenchmarkFailure>& failures = static_runs.failures();
     report.failures.insert(report.failures.end(), failures.begin(), failures.end());
     report.notes.insert(report.notes.end(), static_runs.notes().begin(), static_runs.notes().end());
-    mark_front(scene.runs);
-    mark_front(scene.tracking);
+    mark_pareto_front(scene.runs);
+    mark_pareto_front(scene.tracking);
     for (const double error : {0.1, 0.01, 1e-3, 1e-6}) {
       scene.answers.push_back({error, fastest_within(scene.runs, error)});
       scene.tracking_answers.push_back({error, fastest_within(scene.tracking, error)});

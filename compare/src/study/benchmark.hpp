@@ -63,7 +63,7 @@ struct BenchmarkRun {
   /// RMS distance from the reference (of `exact`, which is the reference, from `energy`), divided
   /// by the length; tracking runs: RMS over the compared frames.
   double rms_over_length = 0;
-  bool front = false;  ///< see mark_front()
+  bool front = false;  ///< see mark_pareto_front()
 };
 
 /// Returns the setting in words: law and convention, for `force` also stepper and c_c, for `energy`
@@ -120,7 +120,7 @@ struct BenchmarkReport {
 
 /// Sets BenchmarkRun::front of the runs that no other run beats. A run beats another if neither its
 /// time (median) nor its error is larger, and one of both is smaller. Errors must not be NaN.
-void mark_front(std::vector<BenchmarkRun>& runs);
+void mark_pareto_front(std::vector<BenchmarkRun>& runs);
 
 /// Returns the index of the fastest run with an error of at most `error`, of all runs or of one
 /// model's; std::nullopt if no run is so accurate.

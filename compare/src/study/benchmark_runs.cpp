@@ -61,13 +61,13 @@ SolvedRun solved_run(const Scene& scene, const StaticSeries& series, int size) {
 
 bool Stopwatch::fits(const std::string& name, double predicted_s) {
   constexpr double largest_share = 0.25;
-  const double now_left = left();
-  if (now_left > 0 && predicted_s <= largest_share * now_left) return true;
+  const double remaining = left();
+  if (remaining > 0 && predicted_s <= largest_share * remaining) return true;
   skipped_.push_back(
-      now_left > 0
+      remaining > 0
           ? fmt::format("{}: it takes about {:.2g} s, and one run gets a quarter of the {:.2g} s "
                         "that are left (--seconds)",
-                        name, predicted_s, now_left)
+                        name, predicted_s, remaining)
           : fmt::format("{}: no time is left (--seconds)", name));
   return false;
 }

@@ -20,8 +20,8 @@ class Stopwatch {
 
   /// Elapsed time since construction.
   [[nodiscard]] double seconds() const { return timer_.seconds(); }
-  void allow(double seconds) { until_ = this->seconds() + seconds; }
-  [[nodiscard]] double left() const { return until_ - seconds(); }
+  void allow(double seconds) { deadline_ = this->seconds() + seconds; }
+  [[nodiscard]] double left() const { return deadline_ - seconds(); }
 
   /// Runs `work` repeatedly, which returns its time [s], until the times are enough or one is NaN.
   /// Returns std::nullopt if one run is predicted to take more than a quarter of the remaining
@@ -41,7 +41,7 @@ class Stopwatch {
   const BenchmarkOptions& options_;
   std::vector<std::string>& skipped_;
   Timer timer_;
-  double until_ = 0;
+  double deadline_ = 0;
 };
 
 [[nodiscard]] Timing timing_of(std::vector<double> seconds);

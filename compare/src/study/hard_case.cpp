@@ -87,7 +87,7 @@ Eigen::Matrix3Xd arc(const HardCase& hard, double angle) {
   return points;
 }
 
-std::vector<HardCase> hard_starts() {
+std::vector<HardCase> hard_start_cases() {
   const auto make_start = [](std::string name, std::string what) {
     return make(std::move(name), std::move(what), horizontal(2));
   };
@@ -114,11 +114,11 @@ std::vector<HardCase> hard_starts() {
     cases.push_back(make_start(fmt::format("crumpled {}", seed),
                                "free points anywhere in a cube of half the rod's length"));
     std::mt19937 engine(seed);
-    Eigen::Matrix3Xd& crumpled = cases.back().start;
-    for (Eigen::Index k = 6; k < crumpled.size(); ++k) {
+    Eigen::Matrix3Xd& random_case = cases.back().start;
+    for (Eigen::Index k = 6; k < random_case.size(); ++k) {
       // uniform_real_distribution is not used because its numbers depend on the standard library.
       const double share = static_cast<double>(engine()) / 4294967296.0;
-      crumpled.data()[k] = 0.5 * (share - 0.5);
+      random_case.data()[k] = 0.5 * (share - 0.5);
     }
   }
   return cases;
@@ -144,7 +144,7 @@ HardCase unequal_segments() {
 }
 
 /// Returns the rod of Table 5 with the paper's own law and convention, under its own weight.
-HardCase papers_rod() {
+HardCase paper_rod_case() {
   constexpr double orientation = -175 * pi / 180;
   Scene scene = steel_rod(1, {std::cos(orientation), std::sin(orientation), 0});
   scene.gravity = {0, -9.81, 0};
@@ -154,7 +154,7 @@ HardCase papers_rod() {
   return make("the paper's rod", "Table 5 at -175 deg, law and bookkeeping paper", scene, settings);
 }
 
-std::vector<HardCase> hard_rods() {
+std::vector<HardCase> hard_rod_cases() {
   std::vector<HardCase> cases;
   cases.push_back(make("c_c = AE", "physical stretch stiffness: the stiffest segments for the rod",
                        horizontal(2), ForceModelSettings{.points = 16}));
@@ -175,7 +175,7 @@ std::vector<HardCase> hard_rods() {
   cases.push_back(make("N = 1000", "condition number of the stiffness: 1e12", horizontal(2), 1000));
 
   cases.push_back(unequal_segments());
-  cases.push_back(papers_rod());
+  cases.push_back(paper_rod_case());
   Scene inside = horizontal(2);
   inside.grippers.front().at = 0.13;
   inside.grippers.push_back({.at = 0.37, .position = {0.2, 0.05, 0.03}, .where = "hard case"});
@@ -183,7 +183,7 @@ std::vector<HardCase> hard_rods() {
   return cases;
 }
 
-std::vector<HardCase> hard_surroundings() {
+std::vector<HardCase> hard_surrounding_cases() {
   constexpr double steps_per_second = 20'000;  // the paper's haptic loop
   std::vector<HardCase> cases;
   cases.push_back(make("gripper jumps", "by the rod's length in one step", horizontal(2)));
@@ -213,7 +213,7 @@ std::vector<HardCase> hard_surroundings() {
 }
 
 /// Returns rods between two clamps whose distance is 20 % larger than the rod's length.
-std::vector<HardCase> torn_rods() {
+std::vector<HardCase> overstretched_rods() {
   Scene scene = horizontal(2);
   Gripper far = scene.grippers.front();
   far.at = scene.length;
@@ -221,17 +221,17 @@ std::vector<HardCase> torn_rods() {
   scene.grippers.push_back(far);
   HardCase stretched =
       make("pulled too far, as a spring", "the same rod, stretched by 20 % as c_c allows", scene);
-  const double apart = 1.2 * scene.length;
+  const double distance = 1.2 * scene.length;
   force_model::Grip& pulled = stretched.discretisation.rod.grips.back();
-  pulled.targets.row(0).array() += apart - scene.length;
-  pulled.reference.x() = apart;
+  pulled.targets.row(0).array() += distance - scene.length;
+  pulled.reference.x() = distance;
   stretched.start.rightCols<2>() = pulled.targets;
   stretched.discretisation.starts = {stretched.start};
 
   HardCase refused = stretched;
   refused.name = "pulled too far";
   refused.what = "two grippers 20 % further apart than the rod is long: no shape exists";
-  scene.grippers.back().position.x() = apart;
+  scene.grippers.back().position.x() = distance;
   try {
     (void)discretise(scene, settings_for(scene));
   } catch (const InputError& error) {
@@ -277,7 +277,7 @@ Scene hard_case_scene() {
 std::vector<HardCase> hard_cases(long steps_at_rest) {
   std::vector<HardCase> cases;
   for (std::vector<HardCase> group :
-       {hard_starts(), hard_rods(), hard_surroundings(), torn_rods()}) {
+       {hard_start_cases(), hard_rod_cases(), hard_surrounding_cases(), overstretched_rods()}) {
     std::move(group.begin(), group.end(), std::back_inserter(cases));
   }
   cases.push_back(make("stays at rest", "no drift and no growth of energy", horizontal(2)));

@@ -44,7 +44,7 @@ bool move_gripper(const HardCase& hard, force_model::Simulation& simulation) {
 }
 
 /// Steps the rod until it is at rest or max_steps is reached.
-SimulationEnd come_to_rest(force_model::Simulation& simulation, long max_steps) {
+SimulationEnd step_until_rest(force_model::Simulation& simulation, long max_steps) {
   SimulationEnd trajectory{.finite = true};
   const force_model::RelaxOptions part{.tolerance = 1e-6,
                                        .max_steps = std::max(1L, (max_steps - samples) / samples)};
@@ -63,7 +63,7 @@ SimulationEnd come_to_rest(force_model::Simulation& simulation, long max_steps) 
 }
 
 /// Makes steps from the rest shape; all sampled shapes are classified.
-SimulationEnd stay_at_rest(force_model::Simulation& simulation, long steps) {
+SimulationEnd step_from_rest(force_model::Simulation& simulation, long steps) {
   SimulationEnd trajectory{.finite = true};
   for (long step = 1; step <= steps && trajectory.finite; ++step) {
     trajectory.finite = simulation.step().status != force_model::StepStatus::diverged;
@@ -102,20 +102,22 @@ StabilityResult refused(const HardCase& hard, Stepper stepper) {
   return result;
 }
 
-StabilityResult run_against(const energy_model::PolygonResult& reference, const HardCase& hard,
-                            Stepper stepper, const StabilityOptions& options) {
+StabilityResult run_with_reference(const energy_model::PolygonResult& reference,
+                                   const HardCase& hard, Stepper stepper,
+                                   const StabilityOptions& options) {
   StabilityResult result{.name = hard.name, .what = hard.what, .stepper = stepper};
   const force_model::Rod rod = hard.rod(1);
   force_model::Simulation simulation(hard.rod(0), hard.start, options_for(hard, stepper));
-  const bool tells = stepper == Stepper::automatic || stepper == Stepper::implicit;
-  const long budget = tells ? options.max_steps_auto : options.max_steps;
+  const bool detects_rest = stepper == Stepper::automatic || stepper == Stepper::implicit;
+  const long budget = detects_rest ? options.max_steps_auto : options.max_steps;
   const bool rests = hard.steps_at_rest > 0;
   // An implicit step costs about as much as a hundred explicit ones.
   const long at_rest_steps =
       stepper == Stepper::implicit ? std::max(1L, hard.steps_at_rest / 100) : hard.steps_at_rest;
   SimulationEnd trajectory;
   if (move_gripper(hard, simulation)) {
-    trajectory = rests ? stay_at_rest(simulation, at_rest_steps) : come_to_rest(simulation, budget);
+    trajectory =
+        rests ? step_from_rest(simulation, at_rest_steps) : step_until_rest(simulation, budget);
   } else {
     trajectory.late.push_back(simulation.points());
   }
@@ -143,7 +145,7 @@ StabilityResult run_against(const energy_model::PolygonResult& reference, const 
 /// Whether a sequence of shapes oscillates. Two conditions hold: the sum of their movements exceeds
 /// three times the distance from the first shape to the last, and it exceeds `threshold` [m] (RMS
 /// over the points).
-bool goes_to_and_fro(const std::vector<Eigen::Matrix3Xd>& shapes, double threshold) {
+bool oscillates(const std::vector<Eigen::Matrix3Xd>& shapes, double threshold) {
   if (shapes.size() < 3) return false;
   double path = 0;
   for (std::size_t i = 1; i < shapes.size(); ++i) path += (shapes[i] - shapes[i - 1]).norm();
@@ -173,8 +175,8 @@ Outcome classify(const SimulationEnd& trajectory, const Eigen::Matrix3Xd& refere
       trajectory.at_rest || std::all_of(trajectory.late.begin(), trajectory.late.end(), right);
   if (stays && right(trajectory.late.back())) return Outcome::pass;
   const double threshold = tolerance * length;
-  if (!trajectory.at_rest && (goes_to_and_fro(trajectory.late, threshold) ||
-                              goes_to_and_fro(trajectory.last, threshold))) {
+  if (!trajectory.at_rest &&
+      (oscillates(trajectory.late, threshold) || oscillates(trajectory.last, threshold))) {
     return Outcome::oscillates;
   }
   return Outcome::wrong;
@@ -183,7 +185,7 @@ Outcome classify(const SimulationEnd& trajectory, const Eigen::Matrix3Xd& refere
 StabilityResult run_hard_case(const HardCase& hard, Stepper stepper,
                               const StabilityOptions& options) {
   if (!hard.refusal.empty()) return refused(hard, stepper);
-  return run_against(reference_of(hard), hard, stepper, options);
+  return run_with_reference(reference_of(hard), hard, stepper, options);
 }
 
 std::vector<StabilityResult> stability(const StabilityOptions& options) {
@@ -212,7 +214,7 @@ std::vector<StabilityResult> stability(const StabilityOptions& options) {
     const HardCase& hard = cases[i / steppers];
     const Stepper stepper = options.steppers[i % steppers];
     results[i] = hard.refusal.empty()
-                     ? run_against(references[i / steppers], hard, stepper, options)
+                     ? run_with_reference(references[i / steppers], hard, stepper, options)
                      : refused(hard, stepper);
     counter.add_one();
   };

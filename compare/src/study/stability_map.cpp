@@ -25,7 +25,7 @@ namespace {
 constexpr double disturbance = 1e-6;  // RMS over the points, divided by the length
 // Growth factor of a disturbance from which a rod is unstable.
 constexpr double unstable_growth = 100;
-constexpr long map_looks = 16;  // samples of each rod
+constexpr long map_samples = 16;  // samples of each rod
 constexpr int bisections = 12;
 
 /// Rod at rest with its predicted limits.
@@ -125,12 +125,13 @@ class Trials {
     const auto run_block = [&](std::size_t block) {
       const std::size_t first = block * force_model::Batch::rods_per_block;
       const std::size_t end = std::min(first + force_model::Batch::rods_per_block, which.size());
-      for (long look = 0; look < map_looks; ++look) {
-        batch.step_block(block, std::max(1L, options_.steps / map_looks));
+      for (long sample = 0; sample < map_samples; ++sample) {
+        batch.step_block(block, std::max(1L, options_.steps / map_samples));
         for (std::size_t i = first; i < end; ++i) {
           if (outcomes[i] == Outcome::diverges) continue;
-          const Outcome seen = look_at(rods_[which[i]], batch.points(i), batch.diverged(i));
-          if (seen != Outcome::pass) outcomes[i] = seen;
+          const Outcome outcome =
+              classify_rest(rods_[which[i]], batch.points(i), batch.diverged(i));
+          if (outcome != Outcome::pass) outcomes[i] = outcome;
         }
       }
       counter_.add_one();
@@ -145,7 +146,8 @@ class Trials {
     return static_cast<std::int64_t>((rods + block - 1) / block);
   }
 
-  static Outcome look_at(const RodAtRest& rest, const Eigen::Matrix3Xd& points, bool diverged) {
+  static Outcome classify_rest(const RodAtRest& rest, const Eigen::Matrix3Xd& points,
+                               bool diverged) {
     constexpr double reach = 10;  // lengths
     const double length = rest.rod.length();
     const double distance =

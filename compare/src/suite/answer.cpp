@@ -68,12 +68,12 @@ double resolution(const Scene& scene, const PointForces& forces) {
 /// Number of points of the chain with which a rod that stretches is compared.
 constexpr int fine_chain = 1024;
 
-double or_zero(double estimate) { return std::isfinite(estimate) ? estimate : 0; }
+double finite_or_zero(double estimate) { return std::isfinite(estimate) ? estimate : 0; }
 
 AnswerBounds bounds_between(const Solution& a, const Solution& b) {
   AnswerBounds bounds;
   bounds.points_m = largest_distance({a.shape.points}, {b.shape.points}) +
-                    or_zero(a.error_estimate) + or_zero(b.error_estimate);
+                    finite_or_zero(a.error_estimate) + finite_or_zero(b.error_estimate);
   for (std::size_t i = 0; i < a.grippers.size(); ++i) {
     bounds.forces_N.push_back((a.grippers[i].force - b.grippers[i].force).norm());
     bounds.torques_Nm.push_back((a.grippers[i].torque - b.grippers[i].torque).norm());
@@ -87,20 +87,21 @@ AnswerBounds bounds_between(const Solution& a, const Solution& b) {
 
 /// Adds every other equilibrium that the energy model finds to the answer, and sets the smallest
 /// eigenvalue of the answer itself.
-void look_for_others(Answer& answer) {
+void add_other_equilibria(Answer& answer) {
   const std::vector<double>& s = answer.first.shape.arc_length;
   const AllSolutions all = solve_all(answer.of.scene, {}, s);
   const double length = answer.of.scene.length;
   const double large = magnitudes(answer.of.scene).energy;
   for (const Solution& one : all.solutions) {
-    const double apart = rms(s, one.shape.points - answer.first.shape.points);
-    if (apart < methods_agree * length) {
+    const double difference = rms(s, one.shape.points - answer.first.shape.points);
+    if (difference < method_tolerance * length) {
       answer.first.smallest_eigenvalue = one.smallest_eigenvalue;
       continue;
     }
-    answer.others.push_back({one.energy.total(), is_stable(one), one.smallest_eigenvalue, apart});
-    constexpr double same = 1e-9;
-    if (is_stable(one) && one.energy.total() < answer.first.energy.total() - same * large) {
+    answer.others.push_back(
+        {one.energy.total(), is_stable(one), one.smallest_eigenvalue, difference});
+    constexpr double tolerance = 1e-9;
+    if (is_stable(one) && one.energy.total() < answer.first.energy.total() - tolerance * large) {
       answer.is_lowest = false;
     }
   }
@@ -118,11 +119,11 @@ constexpr int segments = motion_points - 1;
 
 std::optional<MomentBalance> moment_balance(const Scene& scene, const Shape& shape, double power) {
   const bool plain = scene.sections.empty() && !scene.has_material_directors() &&
-                     !scene.holds_twist() && !scene.has_couples() &&
+                     !scene.prescribes_twist() && !scene.has_couples() &&
                      scene.stretch == Stretch::none && obstacles_in_reach(scene).empty();
-  constexpr Eigen::Index fewest = 6;
+  constexpr Eigen::Index least_count = 6;
   const Eigen::Index n = shape.points.cols() - 1;
-  if (!plain || n < fewest || scene.grippers.size() > 2) return std::nullopt;
+  if (!plain || n < least_count || scene.grippers.size() > 2) return std::nullopt;
   const Gripper* first = nullptr;
   const Gripper* last = nullptr;
   for (const Gripper& gripper : scene.grippers) {
@@ -206,13 +207,14 @@ Answer certified_answer(const BatteryScene& scene) {
   }
   answer.bounds = bounds_between(answer.first, answer.second);
   const double agree =
-      (scene.scene.stretch != Stretch::none ? chain_agrees : methods_agree) * scene.scene.length;
+      (scene.scene.stretch != Stretch::none ? chain_method_tolerance : method_tolerance) *
+      scene.scene.length;
   if (!(answer.bounds.points_m <= agree)) {
     throw ConvergenceError(fmt::format("{}: {} and {} are {:.3g} m apart (allowed: {:.3g} m)",
                                        scene.id, to_string(answer.first.model),
                                        answer.second_method, answer.bounds.points_m, agree));
   }
-  if (scene.scene.stretch == Stretch::none) look_for_others(answer);
+  if (scene.scene.stretch == Stretch::none) add_other_equilibria(answer);
   return answer;
 }
 
@@ -230,7 +232,7 @@ MotionAnswer certified_motion(const BatteryScene& scene) {
       fmt::format("hinges, N = {}, {} and {}, extrapolated", segments, 2 * segments, 4 * segments);
   answer.points_bound_m = largest_distance(answer.frames, hinges.frames) + hinges.error +
                           largest_distance(answer.frames, coarse.frames) + fine.step_error * length;
-  const double agree = motions_agree * length;
+  const double agree = motion_method_tolerance * length;
   if (!(answer.points_bound_m <= agree)) {
     throw ConvergenceError(fmt::format("{}: energy and {} are {:.3g} m apart (allowed: {:.3g} m)",
                                        scene.id, answer.second_method, answer.points_bound_m,

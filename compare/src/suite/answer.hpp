@@ -18,7 +18,7 @@ struct OtherEquilibrium {
   double energy_J = 0;             ///< total energy [J]
   bool stable = false;             ///< whether it is stable, as far as known
   double smallest_eigenvalue = 0;  ///< Solution::smallest_eigenvalue
-  double apart_m = 0;              ///< RMS distance from the answer [m]
+  double distance_m = 0;           ///< RMS distance from the answer [m]
 };
 
 /// Bounds of the differences between the results of two methods. The bound of the points includes
@@ -48,10 +48,10 @@ inline constexpr int answer_points = 101;
 
 /// Largest allowed AnswerBounds::points_m, divided by the length. If it is larger, the methods do
 /// not agree.
-inline constexpr double methods_agree = 1e-6;
+inline constexpr double method_tolerance = 1e-6;
 /// Largest allowed AnswerBounds::points_m, divided by the length, if the second method is a chain,
 /// which has a discretisation error.
-inline constexpr double chain_agrees = 2e-4;
+inline constexpr double chain_method_tolerance = 2e-4;
 
 /// Solves a scene by both methods, compares them, and searches for other equilibria.
 /// @throws ConvergenceError if a method does not converge, or if they do not agree
@@ -99,7 +99,7 @@ inline constexpr int motion_points = 25;
 
 /// Largest allowed MotionAnswer::points_bound_m, divided by the length. If it is larger, the
 /// methods do not agree.
-inline constexpr double motions_agree = 2e-4;
+inline constexpr double motion_method_tolerance = 2e-4;
 
 /// Computes a motion by the energy model, and by chains of 24, 48 and 96 hinges (hinge_limit()).
 /// @throws ConvergenceError if a method does not reach the end, or if they do not agree

@@ -31,13 +31,13 @@ ClosedForm read_closed_form(StrictTable table, double length) {
 
 BatteryMotion read_motion(StrictTable table,
                           const std::function<Scene(const std::string& name)>& scene_of) {
-  constexpr int fewest = 4;  // cubic interpolation between frames needs four
+  constexpr int least_count = 4;  // cubic interpolation between frames needs four
   constexpr int most = 1000;
   table.only({"begin", "frames", "until"});
   BatteryMotion motion;
   motion.begin = scene_of(table.text("begin"));
   motion.until = table.number("until", Dimension::time, Range::positive());
-  motion.frames = table.integer("frames", fewest, most);
+  motion.frames = table.integer("frames", least_count, most);
   table.finish();
   return motion;
 }

@@ -35,8 +35,8 @@ CardScene run_scene(const BatteryScene& scene, const Simulator& simulator,
   CardScene result{.id = scene.id, .group = scene.group, .order = none};
   for (const int factor : {1, 2, 4}) {
     SimulatorRun& run =
-        result.runs.emplace_back(kept_run(options.state, options.version, simulator, scene,
-                                          factor * options.points, options.time_limit));
+        result.runs.emplace_back(stored_or_new_run(options.state, options.version, simulator, scene,
+                                                   factor * options.points, options.time_limit));
     try {
       if (run.status == RunStatus::solved) measure(run);
     } catch (const InputError& error) {
@@ -55,10 +55,10 @@ CardScene card_scene(const BatteryScene& scene, const energy_model::Equilibrium&
                      const Simulator& simulator, const CardOptions& options) {
   std::vector<CardShape> shapes;
   CardScene result = run_scene(scene, simulator, options, [&](SimulatorRun& run) {
-    const bool told = !run.shape->arc_length.empty();
-    Shape shape =
-        laid_by_grippers(*run.shape, scene.scene, told ? ArcLengths::file : ArcLengths::chord);
-    require_held_ends(scene.scene, shape, told);
+    const bool has_arc_lengths = !run.shape->arc_length.empty();
+    Shape shape = aligned_by_grippers(*run.shape, scene.scene,
+                                      has_arc_lengths ? ArcLengths::file : ArcLengths::chord);
+    require_held_ends(scene.scene, shape, has_arc_lengths);
     run.error = shape_deviation(scene.scene, shape, reference.sample).rms_over_length;
     shapes.push_back({.points = run.points, .shape = std::move(shape), .error = run.error});
   });
@@ -69,8 +69,8 @@ CardScene card_scene(const BatteryScene& scene, const energy_model::Equilibrium&
 
 /// Order of convergence from which, and error up to which, no cause is searched for a motion: it
 /// converges with about second order, or its error is at most 1e-3 of its travel.
-constexpr double converges = 1.5;
-constexpr double hardly_off = 1e-3;
+constexpr double converging_order = 1.5;
+constexpr double negligible_motion_error = 1e-3;
 
 CardScene card_motion(const BatteryScene& scene, const MotionReference& reference,
                       const Simulator& simulator, const CardOptions& options) {
@@ -82,7 +82,8 @@ CardScene card_motion(const BatteryScene& scene, const MotionReference& referenc
     finest = std::move(run.motion);
   });
   result.order = convergence_order(errors);
-  if (!finest || result.order >= converges || errors.back().error <= hardly_off) return result;
+  if (!finest || result.order >= converging_order || errors.back().error <= negligible_motion_error)
+    return result;
   result.causes = motion_causes(reference, *finest);
   return result;
 }
@@ -117,25 +118,25 @@ void add_scene(CardGroup& group, const CardScene& scene) {
 /// has different apparent stiffnesses in others, it is not at rest in these either.
 void join_causes(Card& card) {
   constexpr const char* stiffness = "bending stiffness wrong";
-  constexpr const char* unrest = "not at rest";
-  constexpr double same = 0.1;
+  constexpr const char* imbalance_name = "not at rest";
+  constexpr double tolerance = 0.1;
   double least = std::numeric_limits<double>::infinity();
   double most = 0;
   bool rests = true;
   for (const CardScene& scene : card.scenes) {
     for (const Cause& cause : scene.causes) {
-      if (cause.name == unrest) rests = false;
+      if (cause.name == imbalance_name) rests = false;
       if (cause.name != stiffness) continue;
       least = std::min(least, cause.factor);
       most = std::max(most, cause.factor);
     }
   }
-  if (rests || most <= least * (1 + same)) return;
+  if (rests || most <= least * (1 + tolerance)) return;
   for (CardScene& scene : card.scenes) {
     for (Cause& cause : scene.causes) {
       if (cause.name != stiffness) continue;
       cause.words += fmt::format(", but in other scenes {:.3g} to {:.3g} times", least, most);
-      cause.name = unrest;
+      cause.name = imbalance_name;
       cause.factor = none;
     }
   }
@@ -222,7 +223,7 @@ std::vector<Card> make_cards(const std::string& battery_version,
   }
   const auto all = static_cast<std::int64_t>(scenes.size() * simulators.size());
   std::int64_t done = 0;
-  std::mutex telling;
+  std::mutex output_mutex;
   tbb::task_arena arena(arena_threads(options.threads));
   execute(arena, [&] {
     tbb::parallel_for(std::size_t{0}, scenes.size(), [&](std::size_t i) {
@@ -230,7 +231,7 @@ std::vector<Card> make_cards(const std::string& battery_version,
       for (std::size_t k = 0; k < simulators.size(); ++k) {
         cards[k].scenes[i] = card_of(simulators[k]);
         if (!options.progress) continue;
-        const std::lock_guard lock(telling);
+        const std::lock_guard lock(output_mutex);
         options.progress(++done, all);
       }
     });

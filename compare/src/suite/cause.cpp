@@ -50,13 +50,14 @@ class Diagnosis {
     const bool converges = !(finest().error > error_floor) || order > limits::second_order;
     // A rod that stretches is compared only with those of scenes that lack a property.
     const bool stretches = scene_.stretch != Stretch::none;
-    if (!stretches && look_at_chains(converges)) return found_;
+    if (!stretches && find_chain_cause(converges)) return found_;
     if (converges || finest().error <= limits::negligible_error) return found_;
     // Discretisation error without a specific cause.
-    if (order > limits::no_order && !stays()) return found_;
-    const auto compare_factors = [this](auto fit, const CardShape& coarser, double may_leave) {
+    if (order > limits::nonconverging_order && !is_error_stagnant()) return found_;
+    const auto compare_factors = [this](auto fit, const CardShape& coarser, double largest_share) {
       const std::optional<double> fine = (this->*fit)(finest(), limits::fitted_left);
-      const std::optional<double> coarse = fine ? (this->*fit)(coarser, may_leave) : std::nullopt;
+      const std::optional<double> coarse =
+          fine ? (this->*fit)(coarser, largest_share) : std::nullopt;
       if (!coarse) return false;
       found_.push_back(
           cause_of_factors(scene_, {coarser.points, *coarse}, {finest().points, *fine}));
@@ -64,12 +65,12 @@ class Diagnosis {
     };
     const auto springs = &Diagnosis::spring_factor;
     const auto modulus = &Diagnosis::modulus_factor;
-    (void)(look_at_neglected() || stretches || look_at_states() ||
-           compare_factors(springs, coarsest(), limits::fitted_left) || look_at_rest() ||
+    (void)(find_neglected_property() || stretches || find_other_equilibrium() ||
+           compare_factors(springs, coarsest(), limits::fitted_left) || find_imbalance() ||
            compare_factors(modulus, coarsest(), limits::fitted_left) ||
            compare_factors(modulus, second_finest(), limits::coarse_left) ||
            compare_factors(springs, second_finest(), limits::coarse_left) ||
-           look_at_scene(limits::fitted_left));
+           find_scene_cause(limits::fitted_left));
     return found_;
   }
 
@@ -82,10 +83,10 @@ class Diagnosis {
   [[nodiscard]] double error_m(const CardShape& shape) const { return shape.error * scene_.length; }
 
   /// Whether the error is not small and no longer decreases with N.
-  [[nodiscard]] bool stays() const {
+  [[nodiscard]] bool is_error_stagnant() const {
     constexpr double small = 5e-3;
     if (shapes_.size() < 3 || finest().error < small) return false;
-    return convergence_order({shapes_.end() - 2, shapes_.end()}) < limits::no_order;
+    return convergence_order({shapes_.end() - 2, shapes_.end()}) < limits::nonconverging_order;
   }
 
   void add(std::string name, double factor, std::string words) {
@@ -94,17 +95,19 @@ class Diagnosis {
 
   /// Searches for a chain that fits the shapes. @return whether they are those of a chain of hinges
   /// with springs EI/h
-  bool look_at_chains(bool converges) {
+  bool find_chain_cause(bool converges) {
     if (!(coarsest().error > error_floor)) return false;
-    const std::optional<OwnPolygon> best =
-        nearest_chain(coarsest(), Springs::as_the_rod, limits::chain_left);
+    const std::optional<CandidateChain> best =
+        nearest_chain(coarsest(), Springs::rod_stiffness, limits::chain_left);
     if (!best) return false;
     // The finest shape excludes an accidental fit of the coarsest one.
-    const std::vector<OwnPolygon> fine = own_polygons(scene_, finest().shape, Springs::as_the_rod);
-    const auto same = std::find_if(fine.begin(), fine.end(), [&](const OwnPolygon& chain) {
-      return chain.clamp == best->clamp;
-    });
-    if (same == fine.end() || !(same->rms_m <= limits::chain_left * error_m(finest())))
+    const std::vector<CandidateChain> fine =
+        candidate_chains(scene_, finest().shape, Springs::rod_stiffness);
+    const auto fine_polygon =
+        std::find_if(fine.begin(), fine.end(),
+                     [&](const CandidateChain& chain) { return chain.clamp == best->clamp; });
+    if (fine_polygon == fine.end() ||
+        !(fine_polygon->rms_m <= limits::chain_left * error_m(finest())))
       return false;
     const bool is_clamped =
         std::any_of(scene_.grippers.begin(), scene_.grippers.end(),
@@ -117,7 +120,7 @@ class Diagnosis {
       add("hinge at the clamp", half,
           "the hinge at the clamp has a spring of EI/h: half an element is too soft there");
     }
-    if (best->law_shows && best->law == energy_model::JointLaw::linear) {
+    if (best->is_law_identified && best->law == energy_model::JointLaw::linear) {
       add("springs linear in the angle", undefined,
           "springs are linear in the angle, not in 2 tan(angle/2): another error of second order");
       found_.back().defect = false;
@@ -126,29 +129,29 @@ class Diagnosis {
   }
 
   /// Returns the chain nearest to a shape, if it leaves at most this fraction of the error.
-  [[nodiscard]] std::optional<OwnPolygon> nearest_chain(const CardShape& shape, Springs springs,
-                                                        double may_leave) const {
-    const std::vector<OwnPolygon> chains = own_polygons(scene_, shape.shape, springs);
-    const auto best = std::ranges::min_element(chains, {}, &OwnPolygon::rms_m);
-    const bool is_near = best != chains.end() && best->rms_m <= may_leave * error_m(shape);
+  [[nodiscard]] std::optional<CandidateChain> nearest_chain(const CardShape& shape, Springs springs,
+                                                            double largest_share) const {
+    const std::vector<CandidateChain> chains = candidate_chains(scene_, shape.shape, springs);
+    const auto best = std::ranges::min_element(chains, {}, &CandidateChain::rms_m);
+    const bool is_near = best != chains.end() && best->rms_m <= largest_share * error_m(shape);
     return is_near ? std::optional(*best) : std::nullopt;
   }
 
   /// Returns the stiffness of the springs of the chain that fits the shape best, divided by EI/h;
   /// std::nullopt as nearest_chain().
   [[nodiscard]] std::optional<double> spring_factor(const CardShape& shape,
-                                                    double may_leave) const {
-    const std::optional<OwnPolygon> best = nearest_chain(shape, Springs::fitted, may_leave);
+                                                    double largest_share) const {
+    const std::optional<CandidateChain> best = nearest_chain(shape, Springs::fitted, largest_share);
     return best ? std::optional(best->stiffness) : std::nullopt;
   }
 
   [[nodiscard]] std::optional<double> modulus_factor(const CardShape& shape,
-                                                     double may_leave) const {
+                                                     double largest_share) const {
     try {
       const EffectiveModulus modulus =
           fit_effective_modulus(scene_, distance_from(shape.shape), reference_);
       if (!is_identified(modulus.optimum)) return std::nullopt;
-      if (!(modulus.rms_m <= may_leave * error_m(shape))) return std::nullopt;
+      if (!(modulus.rms_m <= largest_share * error_m(shape))) return std::nullopt;
       return modulus.ratio;
     } catch (const ResultError&) {
       return std::nullopt;
@@ -156,7 +159,7 @@ class Diagnosis {
   }
 
   /// Whether the shape is that of a scene without one of its properties.
-  bool look_at_one_neglected(const Scene& without, const std::string& name) {
+  bool is_scene_without(const Scene& without, const std::string& name) {
     try {
       const energy_model::Equilibrium rod = solve_reference(without, answer_model(without));
       const auto left = [&](const CardShape& shape) {
@@ -166,10 +169,11 @@ class Diagnosis {
       const bool is_near = fine <= limits::without_left * finest().error;
       // The shapes may also converge to that rod, if the finest one is much closer to it than to
       // the reference.
-      const bool comes_near = fine <= limits::coarse_left * finest().error &&
-                              convergence_order({{coarsest().points, {}, left(coarsest())},
-                                                 {finest().points, {}, fine}}) > limits::some_order;
-      if (!is_near && !comes_near) return false;
+      const bool may_converge =
+          fine <= limits::coarse_left * finest().error &&
+          convergence_order({{coarsest().points, {}, left(coarsest())},
+                             {finest().points, {}, fine}}) > limits::approaching_order;
+      if (!is_near && !may_converge) return false;
       add(name, undefined, "the shape is that of the scene without it");
       return true;
     } catch (const ResultError&) {
@@ -177,39 +181,40 @@ class Diagnosis {
     }
   }
 
-  bool look_at_neglected() {
+  bool find_neglected_property() {
     bool is_found = false;
-    const auto look = [&](bool has, const char* name, const auto& remove) {
+    const auto try_without = [&](bool has, const char* name, const auto& remove) {
       if (!has || is_found) return;
       Scene without = scene_;
       remove(without);
-      is_found = look_at_one_neglected(without, name);
+      is_found = is_scene_without(without, name);
     };
-    look(scene_.naturally_bent(), "intrinsic curvature ignored",
-         [](Scene& scene) { scene = scene.without_natural_strain(); });
-    look(scene_.holds_twist(), "twist not coupled",
-         [](Scene& scene) { scene = scene.without_twist(); });
-    look(scene_.stretch != Stretch::none, "stretch ignored",
-         [](Scene& scene) { scene.stretch = Stretch::none; });
-    look(scene_.given_bending_stiffness_2.has_value(), "second bending stiffness ignored",
-         [](Scene& scene) { scene.given_bending_stiffness_2.reset(); });
-    look(scene_.given_bending_stiffness_2.has_value(), "first bending stiffness ignored",
-         [](Scene& scene) {
-           scene.given_bending_stiffness = scene.given_bending_stiffness_2;
-           scene.given_bending_stiffness_2.reset();
-         });
-    look(!scene_.sections.empty(), "sections ignored",
-         [](Scene& scene) { scene.sections.clear(); });
-    look(!scene_.loads.empty(), "loads ignored", [](Scene& scene) { scene.loads.clear(); });
-    look(!scene_.gravity.isZero(), "weight ignored", [](Scene& scene) { scene.gravity.setZero(); });
-    look(!scene_.obstacles.empty(), "obstacles ignored",
-         [](Scene& scene) { scene.obstacles.clear(); });
+    try_without(scene_.naturally_bent(), "intrinsic curvature ignored",
+                [](Scene& scene) { scene = scene.without_natural_strain(); });
+    try_without(scene_.prescribes_twist(), "twist not coupled",
+                [](Scene& scene) { scene = scene.without_twist(); });
+    try_without(scene_.stretch != Stretch::none, "stretch ignored",
+                [](Scene& scene) { scene.stretch = Stretch::none; });
+    try_without(scene_.given_bending_stiffness_2.has_value(), "second bending stiffness ignored",
+                [](Scene& scene) { scene.given_bending_stiffness_2.reset(); });
+    try_without(scene_.given_bending_stiffness_2.has_value(), "first bending stiffness ignored",
+                [](Scene& scene) {
+                  scene.given_bending_stiffness = scene.given_bending_stiffness_2;
+                  scene.given_bending_stiffness_2.reset();
+                });
+    try_without(!scene_.sections.empty(), "sections ignored",
+                [](Scene& scene) { scene.sections.clear(); });
+    try_without(!scene_.loads.empty(), "loads ignored", [](Scene& scene) { scene.loads.clear(); });
+    try_without(!scene_.gravity.isZero(), "weight ignored",
+                [](Scene& scene) { scene.gravity.setZero(); });
+    try_without(!scene_.obstacles.empty(), "obstacles ignored",
+                [](Scene& scene) { scene.obstacles.clear(); });
     return is_found;
   }
 
   /// Adds a cause if the shape of the largest N is another equilibrium of the scene. @return
   /// whether it is
-  bool look_at_states() {
+  bool find_other_equilibrium() {
     constexpr double small = 1e-3;
     if (finest().error < small) return false;
     try {
@@ -230,7 +235,7 @@ class Diagnosis {
 
   /// Adds a cause if the bending moments balance with spring moments proportional to a power of the
   /// angle other than 1. @return whether they do
-  bool look_at_power() {
+  bool find_power_law() {
     constexpr double least = 0.25;
     constexpr double most = 5;
     constexpr int steps = 19;
@@ -241,33 +246,34 @@ class Diagnosis {
       return balance ? balance->imbalance : std::numeric_limits<double>::infinity();
     };
     const Function of_finest = [&](double power) { return left(finest(), power); };
-    const Scan seen = scan(of_finest, least, most, steps);
-    if (!seen.is_bracketed()) return false;
-    const Minimum best = minimum_near(of_finest, seen);
+    const Scan scanned = scan(of_finest, least, most, steps);
+    if (!scanned.is_bracketed()) return false;
+    const Minimum best = minimum_near(of_finest, scanned);
     if (!(best.value < balanced) || std::abs(best.x - 1) < other) return false;
-    if (!(left(coarsest(), best.x) < limits::out_of_balance)) return false;
+    if (!(left(coarsest(), best.x) < limits::rest_imbalance_limit)) return false;
     add("springs with a power of the angle", best.x,
         fmt::format("moments balance if they go with the power {:.2g} of the joints' angles",
                     best.x));
     return true;
   }
 
-  bool look_at_rest() {
+  bool find_imbalance() {
     const std::optional<MomentBalance> balance = moment_balance(scene_, finest().shape);
     if (!balance) return false;
-    constexpr double as_it_is = 0.03;
-    if (!(balance->imbalance > limits::out_of_balance)) {
-      if (std::abs(balance->stiffness - 1) > as_it_is || std::abs(balance->weight - 1) < as_it_is) {
+    constexpr double tolerance = 0.03;
+    if (!(balance->imbalance > limits::rest_imbalance_limit)) {
+      if (std::abs(balance->stiffness - 1) > tolerance ||
+          std::abs(balance->weight - 1) < tolerance) {
         return false;
       }
       add("weight wrong", balance->weight,
           fmt::format("the weight is {:.3g} times the scene's", balance->weight));
       return true;
     }
-    if (look_at_power()) return true;
+    if (find_power_law()) return true;
     if (balance->imbalance <= balance->resolution) return false;
     // A shape with loads other than the scene's is out of balance too.
-    if (look_at_scene(limits::unbalanced_left)) return true;
+    if (find_scene_cause(limits::unbalanced_left)) return true;
     add("not at rest", balance->imbalance,
         fmt::format("no forces at its ends balance {:.2g} % of its bending moments, whatever the "
                     "stiffness is",
@@ -277,7 +283,7 @@ class Diagnosis {
 
   /// Searches the explanations of `dlo check` for a cause.
   /// @param left  fraction of the error that it may leave
-  bool look_at_scene(double left) {
+  bool find_scene_cause(double left) {
     try {
       const MeasuredShape shape =
           shape_of(finest().shape.points, finest().shape.arc_length, "its shape");
@@ -286,7 +292,7 @@ class Diagnosis {
       const std::vector<Explanation> all = explain_shape(scene_, shape, check, options);
       for (const Explanation& one : all) {
         if (one.kind == ExplanationKind::discretisation) continue;
-        if (!(one.rms_m <= left * check.whole_rms_m)) continue;
+        if (!(one.rms_m <= left * check.whole_rod_rms_m)) continue;
         add(one.kind == ExplanationKind::file ? "file" : "scene", undefined, one.cause);
         return true;
       }
@@ -310,11 +316,11 @@ Cause cause_of_factors(const Scene& scene, const StiffnessFactor& coarse,
                            ? std::log(fine.factor / coarse.factor) /
                                  std::log(static_cast<double>(fine.points) / coarse.points)
                            : 0;
-  constexpr double near_power = 0.35;
+  constexpr double power_tolerance = 0.35;
   const std::string both =
       fmt::format("bending stiffness is {:.3g} times EI with N = {} and {:.3g} times with N = {}",
                   coarse.factor, coarse.points, fine.factor, fine.points);
-  if (is_pulled_by_weight_alone(scene) && grows_with_elements(coarse, fine)) {
+  if (is_loaded_by_weight_alone(scene) && grows_with_elements(coarse, fine)) {
     // A ball of the caps' radius r on each element of length h adds 4 r / (3 h) of its weight.
     const double h = scene.length / (fine.points - 1);
     return {"weight with caps", 1 / fine.factor,
@@ -323,24 +329,25 @@ Cause cause_of_factors(const Scene& scene, const StiffnessFactor& coarse,
                         1 / coarse.factor, coarse.points, 1 / fine.factor, fine.points,
                         0.75e3 * h * (1 / fine.factor - 1))};
   }
-  if (std::abs(power + 1) < near_power) {
+  if (std::abs(power + 1) < power_tolerance) {
     return {"springs without 1/h", fine.factor,
             both + ": it is not divided by the element's length"};
   }
-  if (std::abs(power - 1) < near_power) {
+  if (std::abs(power - 1) < power_tolerance) {
     return {"springs with 1/h^2", fine.factor,
             both + ": it is divided by the element's length twice"};
   }
   // Below it the rod is a rope, and how far below does not show.
-  constexpr double next_to_none = 1e-3;
-  if (coarse.factor < next_to_none && fine.factor < next_to_none) {
-    return {"bending stiffness ignored", std::numeric_limits<double>::quiet_NaN(),
-            fmt::format("the bending stiffness is less than {:g} of the scene's", next_to_none)};
+  constexpr double negligible_factor = 1e-3;
+  if (coarse.factor < negligible_factor && fine.factor < negligible_factor) {
+    return {
+        "bending stiffness ignored", std::numeric_limits<double>::quiet_NaN(),
+        fmt::format("the bending stiffness is less than {:g} of the scene's", negligible_factor)};
   }
-  if (std::abs(power) < near_power) {
+  if (std::abs(power) < power_tolerance) {
     return {"bending stiffness wrong", fine.factor,
             fmt::format("the bending stiffness is {:.3g} times the scene's{}", fine.factor,
-                        is_pulled_by_weight_alone(scene)
+                        is_loaded_by_weight_alone(scene)
                             ? fmt::format(", or the weight {:.3g} times", 1 / fine.factor)
                             : "")};
   }

@@ -20,10 +20,10 @@ namespace {
 
 constexpr int points_along = 101;
 /// Frames of the model per requested frame; cubics interpolate between them.
-constexpr int frames_per_asked = 8;
+constexpr int frames_per_requested = 8;
 /// End time of the model divided by that of the scene, so that recordings that are faster can be
 /// compared.
-constexpr double beyond = 1.5;
+constexpr double model_time_factor = 1.5;
 constexpr int terms = 12;
 /// Position of the rod with a cause.
 using RodAt = std::function<Eigen::Vector3d(double time, double arc_length)>;
@@ -41,22 +41,22 @@ using CausesLeft = std::vector<std::pair<Cause, double>>;
 
 /// Returns the fitted number of a cause with the RMS distance that it leaves [m]; that is infinite
 /// if the best number is at an end of its range. @param left  distance with a number
-Minimum best_of(double low, double high, const Function& left) {
+Minimum best_parameter(double low, double high, const Function& residual) {
   constexpr int steps = 100;
-  const Scan seen = scan(left, low, high, steps);
-  if (!seen.is_bracketed()) return {0, std::numeric_limits<double>::infinity()};
-  return minimum_near(left, seen);
+  const Scan scanned = scan(residual, low, high, steps);
+  if (!scanned.is_bracketed()) return {0, std::numeric_limits<double>::infinity()};
+  return minimum_near(residual, scanned);
 }
 
 CausesLeft plain_causes(const MotionReference& reference, const MarkerMotion& recorded) {
   constexpr double none = std::numeric_limits<double>::quiet_NaN();
-  const auto left = [&](const ModelMotion& rod) {
+  const auto residual = [&](const ModelMotion& rod) {
     return rms_from(recorded, [&](double, double s) { return rod.at(0, s); });
   };
   return {
-      {{"does not move", none, "it stays where it begins"}, left(reference.motion)},
+      {{"does not move", none, "it stays where it begins"}, residual(reference.motion)},
       {{"inertia ignored", none, "it is at rest at every time, in the equilibrium of the scene"},
-       left(reference.at_rest)}};
+       residual(reference.at_rest)}};
 }
 
 CausesLeft fitted_causes(const MotionReference& reference, const MarkerMotion& recorded) {
@@ -66,14 +66,16 @@ CausesLeft fitted_causes(const MotionReference& reference, const MarkerMotion& r
           best_lag(recorded, model, -std::numeric_limits<double>::infinity(), Displacement::none)) {
     causes.push_back({{"late or early", lag->lag / reference.until, lag_words(*lag)}, lag->rms_m});
   }
-  const Minimum faster = best_of(1 / beyond, beyond, [&](double factor) {
-    return rms_from(recorded, [&](double time, double s) { return model.at(factor * time, s); });
-  });
+  const Minimum faster =
+      best_parameter(1 / model_time_factor, model_time_factor, [&](double factor) {
+        return rms_from(recorded,
+                        [&](double time, double s) { return model.at(factor * time, s); });
+      });
   causes.push_back(
       {{"frequency wrong", faster.x, fmt::format("all goes {:.4g} times as fast", faster.x)},
        faster.value});
   constexpr double most = 10;  // e-foldings over the whole time
-  const Minimum damped = best_of(0, most / reference.until, [&](double rate) {
+  const Minimum damped = best_parameter(0, most / reference.until, [&](double rate) {
     return rms_from(recorded, [&](double time, double s) -> Eigen::Vector3d {
       const Eigen::Vector3d rest = reference.at_rest.at(0, s);
       return rest + std::exp(-rate * time) * (model.at(time, s) - rest);
@@ -94,8 +96,10 @@ MotionReference motion_reference(const BatteryScene& scene) {
   const BatteryMotion& asked = scene.motion.value();
   const double length = scene.scene.length;
   const std::vector<double> s = equal_arc_lengths(length, points_along);
-  const double end = beyond * asked.until;
-  const int count = static_cast<int>(std::ceil(beyond * frames_per_asked * (asked.frames - 1))) + 1;
+  const double end = model_time_factor * asked.until;
+  const int count =
+      static_cast<int>(std::ceil(model_time_factor * frames_per_requested * (asked.frames - 1))) +
+      1;
   ReleasedMotion moved =
       release_rod({scene.scene, asked.begin}, equal_arc_lengths(end, count), s, terms);
   constexpr std::size_t fewest_frames = 4;
@@ -138,16 +142,16 @@ double motion_error(const MotionReference& reference, const MarkerMotion& record
 std::vector<Cause> motion_causes(const MotionReference& reference, const MarkerMotion& recorded) {
   const double error = motion_error(reference, recorded) * reference.travel;
   if (!(error > error_floor * reference.length)) return {};
-  MarkerMotion few{.file = recorded.file, .positions = {}};
+  MarkerMotion sparse{.file = recorded.file, .positions = {}};
   constexpr std::size_t enough = 1000;
   const std::size_t stride = 1 + recorded.positions.size() / enough;
   for (std::size_t i = 0; i < recorded.positions.size(); i += stride) {
-    few.positions.push_back(recorded.positions[i]);
+    sparse.positions.push_back(recorded.positions[i]);
   }
   for (const auto& [may_leave, search] :
        {std::pair(cause_limits::state_left, &plain_causes),
         std::pair(cause_limits::fitted_motion_left, &fitted_causes)}) {
-    CausesLeft causes = search(reference, few);
+    CausesLeft causes = search(reference, sparse);
     const auto best =
         std::ranges::min_element(causes, {}, [](const auto& one) { return one.second; });
     if (best->second <= may_leave * error) return {std::move(best->first)};

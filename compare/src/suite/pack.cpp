@@ -57,12 +57,12 @@ double bound_of_points(double metres, int decimals, double unit = 1) {
 }
 
 /// Rounds to decimals; adding zero avoids -0.
-double place(double value, int decimals) {
+double round_length(double value, int decimals) {
   return as_number<double>(fmt::format("{:.{}f}", value, decimals)).value() + 0.0;
 }
 
 Json places(const std::vector<double>& values, int decimals) {
-  return json_list(values, [&](double value) -> Json { return place(value, decimals); });
+  return json_list(values, [&](double value) -> Json { return round_length(value, decimals); });
 }
 
 Json point_json(const Eigen::Vector3d& point, int decimals) {
@@ -161,9 +161,9 @@ std::string answer_csv(const Answer& answer) {
   const Shape& shape = answer.first.shape;
   for (std::size_t i = 0; i < shape.arc_length.size(); ++i) {
     for (const double x : shape.points.col(static_cast<Eigen::Index>(i))) {
-      text += fmt::format("{:.12f},", place(x, answer_decimals));
+      text += fmt::format("{:.12f},", round_length(x, answer_decimals));
     }
-    text += fmt::format("{:.12f}\n", place(shape.arc_length[i], answer_decimals));
+    text += fmt::format("{:.12f}\n", round_length(shape.arc_length[i], answer_decimals));
   }
   return text;
 }
@@ -171,8 +171,8 @@ std::string answer_csv(const Answer& answer) {
 /// Returns the points of an answer in VTK's XML format, for ParaView.
 std::string answer_vtu(const Answer& answer) {
   Shape shape = answer.first.shape;
-  for (double& x : shape.points.reshaped()) x = place(x, answer_decimals);
-  for (double& s : shape.arc_length) s = place(s, answer_decimals);
+  for (double& x : shape.points.reshaped()) x = round_length(x, answer_decimals);
+  for (double& s : shape.arc_length) s = round_length(s, answer_decimals);
   return vtu_polyline(shape);
 }
 
@@ -184,7 +184,7 @@ std::string motion_csv(const MotionAnswer& answer) {
       const Eigen::Vector3d point = answer.frames[k].col(static_cast<Eigen::Index>(i));
       std::vector<double> row = {answer.times[k], answer.arc_length[i], point.x(), point.y(),
                                  point.z()};
-      for (double& value : row) value = place(value, motion_decimals);
+      for (double& value : row) value = round_length(value, motion_decimals);
       text += fmt::format("{}\n", fmt::join(row, ","));
     }
   }
@@ -222,7 +222,7 @@ nlohmann::ordered_json answer_json(const Answer& answer) {
     return {{"energy_J", rounded(short_number(other.energy_J, large.energy), large.energy)},
             {"stable", other.stable},
             {"apart_over_length",
-             rounded(short_number(other.apart_m, scene.length) / scene.length, 1)}};
+             rounded(short_number(other.distance_m, scene.length) / scene.length, 1)}};
   });
   result["points_bound_m"] = bound_of_points(answer.bounds.points_m, answer_decimals);
   result["arc_length_m"] = places(first.shape.arc_length, answer_decimals);
@@ -271,19 +271,20 @@ Pack certified_pack(const std::string& version, const std::vector<BatteryScene>&
 
 void require_own_pack(const std::string& folder, const std::vector<BatteryScene>& scenes) {
   const std::filesystem::path path(folder);
-  const auto require = [&](const std::string& name, bool is_ours) {
+  const auto require = [&](const std::string& name, bool is_own_file) {
     std::error_code unknown;
     const auto type = std::filesystem::symlink_status(path / name, unknown).type();
-    if (is_ours || type == std::filesystem::file_type::not_found) return;
+    if (is_own_file || type == std::filesystem::file_type::not_found) return;
     throw InputError(fmt::format(
         "{}: not written by an earlier dlo suite --write, left as it is (allowed: another folder)",
         (path / name).string()));
   };
   for (const BatteryScene& scene : scenes) {
     const std::string answer = scene.id + ".json";
-    const bool is_ours =
+    const bool is_own_file =
         has_schema(path / answer, scene.motion ? motion_schema_name : answer_schema_name);
-    for (const char* extension : {".json", ".csv", ".vtu"}) require(scene.id + extension, is_ours);
+    for (const char* extension : {".json", ".csv", ".vtu"})
+      require(scene.id + extension, is_own_file);
   }
   require("suite.json", has_schema(path / "suite.json", pack_schema_name));
   require("schema.json", has_schema(path / "schema.json", answer_schema_name));

@@ -52,8 +52,8 @@ void solve_own(Model model, const Scene& scene, double time_limit, SimulatorRun&
 
 /// Computes a motion by one of dlo's models. Only `chain` has motion: the chain of hinges with
 /// point masses.
-void move_own(Model model, const BatteryScene& scene, int points, double time_limit,
-              SimulatorRun& run) {
+void run_own_motion(Model model, const BatteryScene& scene, int points, double time_limit,
+                    SimulatorRun& run) {
   if (model != Model::chain || scene.scene.force_model.law != BendingLaw::hooke) {
     run.status = RunStatus::not_supported;
     run.problem = "only chain, with law hooke, has motion here";
@@ -80,7 +80,7 @@ SimulatorRun run_own(Model model, BatteryScene scene, int points, double time_li
   scene.scene.file = "scene";  // so that messages do not depend on the name of the scene
   try {
     if (scene.motion) {
-      move_own(model, scene, points, time_limit, run);
+      run_own_motion(model, scene, points, time_limit, run);
     } else {
       solve_own(model, scene.scene, time_limit, run);
     }
@@ -225,12 +225,12 @@ std::vector<Simulator> parse_simulators(const std::vector<std::string>& texts) {
   return simulators;
 }
 
-SimulatorRun kept_run(const std::string& folder, const std::string& version,
-                      const Simulator& simulator, const BatteryScene& scene, int points,
-                      double time_limit) {
+SimulatorRun stored_or_new_run(const std::string& folder, const std::string& version,
+                               const Simulator& simulator, const BatteryScene& scene, int points,
+                               double time_limit) {
   if (folder.empty()) return run_simulator(simulator, scene, points, time_limit);
-  const std::filesystem::path mine = std::filesystem::path(folder) / simulator.name;
-  const std::filesystem::path file = mine / fmt::format("{}_{}.json", scene.id, points);
+  const std::filesystem::path output_folder = std::filesystem::path(folder) / simulator.name;
+  const std::filesystem::path file = output_folder / fmt::format("{}_{}.json", scene.id, points);
   const std::string known = fingerprint(fmt::format(
       "dlo/run/3\n{}\n{}\n{}{}\n{}", version, simulator.identity(),
       files_of_command(simulator.program.words), time_limit, battery_document(scene, points)));
@@ -238,8 +238,8 @@ SimulatorRun kept_run(const std::string& folder, const std::string& version,
   SimulatorRun run = run_simulator(simulator, scene, points, time_limit);
   if (run.status == RunStatus::failed) return run;
   std::error_code error;
-  std::filesystem::create_directories(mine, error);
-  if (error) throw OutputError(fmt::format("{}: {}", mine.string(), error.message()));
+  std::filesystem::create_directories(output_folder, error);
+  if (error) throw OutputError(fmt::format("{}: {}", output_folder.string(), error.message()));
   write_run(file, known, run);
   return run;
 }

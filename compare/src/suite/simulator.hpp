@@ -40,8 +40,8 @@ struct Simulator {
 /// @param folder   created if it does not exist; empty: nothing is stored
 /// @param version  version of dlo
 /// @throws OutputError if a result cannot be stored
-[[nodiscard]] SimulatorRun kept_run(const std::string& folder, const std::string& version,
-                                    const Simulator& simulator, const BatteryScene& scene,
-                                    int points, double time_limit);
+[[nodiscard]] SimulatorRun stored_or_new_run(const std::string& folder, const std::string& version,
+                                             const Simulator& simulator, const BatteryScene& scene,
+                                             int points, double time_limit);
 
 }  // namespace dlo::compare

@@ -61,12 +61,12 @@ constexpr DimensionUnits dimensions[] = {
     {"time", {{"s", 1}, {"ms", 1e-3}, {"min", 60}}, 1e12},
     {"frequency", {{"Hz", 1}, {"kHz", 1e3}}}};
 
-const DimensionUnits& row_of(Dimension dimension) {
+const DimensionUnits& units_of(Dimension dimension) {
   return dimensions[static_cast<std::size_t>(dimension)];
 }
 
 std::span<const Unit> units(Dimension dimension) {
-  const auto& all = row_of(dimension).units;
+  const auto& all = units_of(dimension).units;
   const auto* const end = std::ranges::find(all, std::string_view(), &Unit::name);
   return {std::begin(all), end};
 }
@@ -121,7 +121,7 @@ std::string known_units(Dimension dimension) {
 }
 
 std::string magnitude_problem(double value, Dimension dimension) {
-  const double largest = row_of(dimension).largest;
+  const double largest = units_of(dimension).largest;
   if (std::abs(value) <= largest) return {};
   return fmt::format("out of range (allowed: magnitudes up to {:g} in SI units)", largest);
 }
@@ -139,7 +139,7 @@ double parse_quantity(std::string_view text, Dimension dimension) {
   if (rest.front() == '+') rest.remove_prefix(1);
   const auto [value, length, error] = leading_number<double>(rest);
   if (error == std::errc::result_out_of_range) {
-    throw InputError(beyond_double(rest.substr(0, length)));
+    throw InputError(out_of_range_message(rest.substr(0, length)));
   }
   if (error != std::errc()) throw not_a_number();
   rest.remove_prefix(length);

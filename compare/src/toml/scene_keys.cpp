@@ -69,7 +69,7 @@ std::vector<SceneTable> read_tables(std::string_view text) {
 }
 
 template <typename Element>
-const Element& named(const std::vector<Element>& all, std::string_view name) {
+const Element& find_named(const std::vector<Element>& all, std::string_view name) {
   const auto found = std::ranges::find(all, name, &Element::name);
   if (found == all.end()) throw std::out_of_range(fmt::format("no table or key {}", name));
   return *found;
@@ -103,13 +103,13 @@ bool Range::holds(double value) const {
 
 std::vector<std::string> SceneKey::choices() const { return parts_of(range.text, ','); }
 
-const SceneKey& SceneTable::key(std::string_view name) const { return named(keys, name); }
+const SceneKey& SceneTable::key(std::string_view name) const { return find_named(keys, name); }
 
 const std::vector<SceneTable>& scene_tables() {
   static const std::vector<SceneTable> tables = read_tables(builtin::scene_keys_txt);
   return tables;
 }
 
-const SceneTable& scene_table(std::string_view name) { return named(scene_tables(), name); }
+const SceneTable& scene_table(std::string_view name) { return find_named(scene_tables(), name); }
 
 }  // namespace dlo::compare

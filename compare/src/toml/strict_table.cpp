@@ -58,7 +58,7 @@ const toml::node* StrictTable::find(std::string_view key) {
   return table_.get(key);
 }
 
-const toml::node& StrictTable::need(std::string_view key) {
+const toml::node& StrictTable::required_node(std::string_view key) {
   const toml::node* node = find(key);
   if (node == nullptr) fail(key, "missing, it is required");
   return *node;
@@ -92,7 +92,7 @@ double StrictTable::read_number(std::string_view key, const toml::node& node,
 }
 
 double StrictTable::number(std::string_view key, Dimension dimension, const Range& range) {
-  const double value = read_number(key, need(key), dimension);
+  const double value = read_number(key, required_node(key), dimension);
   if (!range.holds(value)) fail(key, fmt::format("out of range (allowed: {})", range.text));
   return value;
 }
@@ -104,7 +104,7 @@ std::optional<double> StrictTable::optional_number(std::string_view key, Dimensi
 }
 
 int StrictTable::integer(std::string_view key, const Range& range) {
-  const auto value = need(key).value_exact<std::int64_t>();
+  const auto value = required_node(key).value_exact<std::int64_t>();
   if (!value || !range.holds(static_cast<double>(*value))) {
     fail(key, fmt::format("must be a whole number (allowed: {})", range.text));
   }
@@ -120,7 +120,7 @@ bool StrictTable::flag(std::string_view key) {
 }
 
 std::string StrictTable::text(std::string_view key) {
-  const auto value = need(key).value_exact<std::string>();
+  const auto value = required_node(key).value_exact<std::string>();
   if (!value) fail(key, "must be a string");
   return *value;
 }
@@ -141,7 +141,7 @@ std::string StrictTable::choice(std::string_view key, const std::vector<std::str
 
 Eigen::MatrixXd StrictTable::columns(std::string_view key, Dimension dimension,
                                      const NumberForm& form) {
-  const toml::node& node = need(key);
+  const toml::node& node = required_node(key);
   const toml::array* list = node.as_array();
   const bool nested = list != nullptr && !list->empty() && list->front().is_array();
   if (form.nested.value_or(nested) != nested) fail(key, form.words);
@@ -243,12 +243,12 @@ bool StrictTable::is(std::string_view key, toml::node_type type) const {
 
 StrictTable StrictTable::inner(std::string_view key, const toml::table& table) const {
   StrictTable result(table, name(key), file_);
-  if (rows_ != nullptr) result.follow(result.path_);
+  if (rows_ != nullptr) result.use_rows_of(result.path_);
   return result;
 }
 
 StrictTable StrictTable::table(std::string_view key) {
-  const toml::table* found = need(key).as_table();
+  const toml::table* found = required_node(key).as_table();
   if (found == nullptr) fail(key, "must be a table");
   return inner(key, *found);
 }
@@ -272,7 +272,7 @@ std::vector<StrictTable> StrictTable::tables(std::string_view key) {
   return result;
 }
 
-void StrictTable::follow(std::string_view name) {
+void StrictTable::use_rows_of(std::string_view name) {
   rows_ = &scene_table(name);
   only(rows_->names);
   for (const SceneKey& key : rows_->keys) {

@@ -55,7 +55,7 @@ class StrictTable {
   /// rows, also in inner tables.
   /// @throws InputError that names the first key without a row, or that another key excludes, or
   /// that another key needs
-  void follow(std::string_view name);
+  void use_rows_of(std::string_view name);
   /// Reads a key by its row. A missing key that is not required leaves the value as it is.
   /// @return whether the key is given
   template <typename Value>
@@ -97,8 +97,8 @@ class StrictTable {
   [[nodiscard]] std::vector<std::string> keys() const;
 
   /// Checks that the table has only allowed keys; their values are not checked. It is called before
-  /// a key is read (follow() does), so that a message names a misspelt key rather than the key that
-  /// is missing because of it.
+  /// a key is read (use_rows_of() does), so that a message names a misspelt key rather than the key
+  /// that is missing because of it.
   /// @throws InputError that names the first key that is not allowed
   void only(const std::vector<std::string>& allowed) const;
 
@@ -134,7 +134,7 @@ class StrictTable {
   /// Checks the number of a key's rows or tables by its row.
   void require_count(std::string_view key, std::size_t count) const;
   const toml::node* find(std::string_view key);
-  const toml::node& need(std::string_view key);
+  const toml::node& required_node(std::string_view key);
   [[nodiscard]] std::string where(const toml::node* node) const;
   [[nodiscard]] std::string name(std::string_view key) const;
   [[nodiscard]] double read_number(std::string_view key, const toml::node& node,

@@ -16,25 +16,26 @@ namespace {
 constexpr double distance_share = 0.2;
 
 /// Trajectory of a marker, and its arc length on the rod [m].
-struct MarkerWay {
+struct MarkerTrajectory {
   double arc_length = 0;
-  Trajectory way;
+  Trajectory trajectory;
 };
 
 /// Returns the trajectories of all markers, by arc length.
-std::vector<MarkerWay> ways_of(const MarkerMotion& markers, std::optional<double> cutoff) {
-  std::map<double, std::vector<Pose>> seen;
+std::vector<MarkerTrajectory> marker_trajectories(const MarkerMotion& markers,
+                                                  std::optional<double> cutoff) {
+  std::map<double, std::vector<Pose>> by_arc_length;
   for (const MarkerPosition& at : markers.positions) {
-    seen[at.arc_length].push_back({at.time, at.position, std::nullopt, std::nullopt});
+    by_arc_length[at.arc_length].push_back({at.time, at.position, std::nullopt, std::nullopt});
   }
-  if (seen.size() != 2) {
+  if (by_arc_length.size() != 2) {
     throw InputError(
         fmt::format("{}: {} marker{}, by their arc lengths s (allowed: two, on the gripper)",
-                    markers.file, seen.size(), seen.size() == 1 ? "" : "s"));
+                    markers.file, by_arc_length.size(), by_arc_length.size() == 1 ? "" : "s"));
   }
-  std::vector<MarkerWay> ways;
-  ways.reserve(seen.size());
-  for (auto& [s, poses] : seen) {
+  std::vector<MarkerTrajectory> ways;
+  ways.reserve(by_arc_length.size());
+  for (auto& [s, poses] : by_arc_length) {
     if (cutoff) poses = smooth_poses(std::move(poses), *cutoff);
     ways.push_back({s, Trajectory(std::move(poses))});
   }
@@ -45,10 +46,10 @@ std::vector<MarkerWay> ways_of(const MarkerMotion& markers, std::optional<double
 std::vector<double> common_times(const Trajectory& a, const Trajectory& b) {
   const double begin = std::max(a.begin(), b.begin());
   const double end = std::min(a.end(), b.end());
-  const auto times_of = [&](const Trajectory& way) {
+  const auto times_of = [&](const Trajectory& trajectory) {
     std::vector<double> times;
-    times.reserve(way.poses().size());
-    for (const Pose& pose : way.poses()) {
+    times.reserve(trajectory.poses().size());
+    for (const Pose& pose : trajectory.poses()) {
       if (pose.time >= begin && pose.time <= end) times.push_back(pose.time);
     }
     return times;
@@ -62,34 +63,34 @@ std::vector<double> common_times(const Trajectory& a, const Trajectory& b) {
 
 std::vector<Pose> poses_of_markers(const MarkerMotion& markers, double at,
                                    std::optional<double> cutoff) {
-  const std::vector<MarkerWay> ways = ways_of(markers, cutoff);
-  const MarkerWay& a = ways.front();
-  const MarkerWay& b = ways.back();
-  const std::vector<double> times = common_times(a.way, b.way);
+  const std::vector<MarkerTrajectory> ways = marker_trajectories(markers, cutoff);
+  const MarkerTrajectory& a = ways.front();
+  const MarkerTrajectory& b = ways.back();
+  const std::vector<double> times = common_times(a.trajectory, b.trajectory);
   if (times.empty()) {
     throw InputError(fmt::format(
         "{}: the markers at s = {:g} and {:g} m are not seen at the same time (allowed: times that "
         "overlap)",
         markers.file, a.arc_length, b.arc_length));
   }
-  const double apart = b.arc_length - a.arc_length;
-  const double ahead = at - (a.arc_length + b.arc_length) / 2;
+  const double spacing = b.arc_length - a.arc_length;
+  const double offset = at - (a.arc_length + b.arc_length) / 2;
   double mean = 0;
   std::vector<Pose> poses;
   poses.reserve(times.size());
   for (const double time : times) {
-    const Eigen::Vector3d first = a.way.pose_at(time).position;
-    const Eigen::Vector3d second = b.way.pose_at(time).position;
+    const Eigen::Vector3d first = a.trajectory.pose_at(time).position;
+    const Eigen::Vector3d second = b.trajectory.pose_at(time).position;
     mean += (second - first).norm() / static_cast<double>(times.size());
     const Eigen::Vector3d direction = (second - first).normalized();
-    poses.push_back({time, (first + second) / 2 + ahead * direction, direction, std::nullopt});
+    poses.push_back({time, (first + second) / 2 + offset * direction, direction, std::nullopt});
   }
-  if (!(std::abs(mean - apart) <= distance_share * apart)) {
+  if (!(std::abs(mean - spacing) <= distance_share * spacing)) {
     throw InputError(fmt::format(
         "{}: the markers at s = {:g} and {:g} m are {:.4g} m apart on average (allowed: {:.4g} to "
         "{:.4g} m)",
-        markers.file, a.arc_length, b.arc_length, mean, (1 - distance_share) * apart,
-        (1 + distance_share) * apart));
+        markers.file, a.arc_length, b.arc_length, mean, (1 - distance_share) * spacing,
+        (1 + distance_share) * spacing));
   }
   return poses;
 }

@@ -34,7 +34,7 @@ constexpr const char* file_allowed =
     "markers on a gripper, time,s,x,y,z)";
 
 /// Returns the problem of a pose in Trajectory's message, without the name of the class.
-std::string problem_in(const std::invalid_argument& error) {
+std::string problem_of_pose(const std::invalid_argument& error) {
   const std::string_view message = error.what();
   const std::size_t name = message.find(": ");
   return std::string(message.substr(name == std::string_view::npos ? 0 : name + 2));
@@ -66,12 +66,12 @@ Trajectory read_rows(StrictTable& table, std::vector<StrictTable>& rows, const P
   try {
     return Trajectory(std::move(poses));
   } catch (const std::invalid_argument& error) {
-    table.fail("pose", problem_in(error));
+    table.fail("pose", problem_of_pose(error));
   }
 }
 
 /// Whether a file's rows are those of markers, which have arc lengths.
-bool is_of_markers(std::string_view text, const std::string& file) {
+bool has_marker_rows(std::string_view text, const std::string& file) {
   bool found = false;
   for_each_csv_row(text, file, {.most_rows = 1}, [&found](const CsvRow& row) {
     found = std::ranges::find(row.fields, "s") != row.fields.end();
@@ -82,7 +82,7 @@ bool is_of_markers(std::string_view text, const std::string& file) {
 /// Reads the poses of a file. @throws std::invalid_argument as smooth_poses()
 std::vector<Pose> file_poses(const std::string& text, const std::string& file, const PoseKeys& keys,
                              std::optional<double> cutoff) {
-  if (keys.at && is_of_markers(text, file)) {
+  if (keys.at && has_marker_rows(text, file)) {
     return poses_of_markers(parse_markers(text, file), *keys.at, cutoff);
   }
   const Trajectory given = parse_trajectory(text, file);
@@ -91,13 +91,13 @@ std::vector<Pose> file_poses(const std::string& text, const std::string& file, c
 
 }  // namespace
 
-std::string read_beside(const StrictTable& table, std::string_view key, const std::string& path,
-                        const char* allowed) {
+std::string read_referenced_file(const StrictTable& table, std::string_view key,
+                                 const std::string& path, const char* allowed) {
   std::error_code unknown;
   if (!std::filesystem::is_regular_file(path, unknown)) {
-    const bool is_there = std::filesystem::exists(path, unknown);
+    const bool is_file = std::filesystem::exists(path, unknown);
     table.fail(
-        key, fmt::format("{} {}", is_there ? "not a regular file" : "no such file beside the scene",
+        key, fmt::format("{} {}", is_file ? "not a regular file" : "no such file beside the scene",
                          allowed));
   }
   return read_file(path);
@@ -183,7 +183,7 @@ Trajectory parse_trajectory(std::string_view text, const std::string& file) {
   try {
     return Trajectory(std::move(poses));
   } catch (const std::invalid_argument& error) {
-    throw InputError(fmt::format("{}: {}", file, problem_in(error)));
+    throw InputError(fmt::format("{}: {}", file, problem_of_pose(error)));
   }
 }
 
@@ -197,14 +197,14 @@ Trajectory read_trajectory(StrictTable& table, const PoseKeys& keys,
   Trajectory trajectory;
   try {
     const std::string text =
-        read_beside(table, "trajectory", path_beside(*name, scene_file), file_allowed);
+        read_referenced_file(table, "trajectory", path_beside(*name, scene_file), file_allowed);
     trajectory = Trajectory(file_poses(text, *name, keys, cutoff));
   } catch (const InputError& error) {
     // The table's own errors name the position already.
     if (std::string_view(error.what()).starts_with(scene_file)) throw;
     table.fail("trajectory", error.what());
   } catch (const std::invalid_argument& error) {
-    table.fail(cutoff ? "cutoff" : "trajectory", problem_in(error));
+    table.fail(cutoff ? "cutoff" : "trajectory", problem_of_pose(error));
   }
   if (trajectory.poses().front().direction && !keys.direction) {
     table.fail("trajectory", "has directions (allowed here: time,x,y,z)");

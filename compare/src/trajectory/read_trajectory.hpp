@@ -61,8 +61,8 @@ struct PoseKeys {
 /// Reads the text of the file that a table's key names (path_beside()). Only a regular file is
 /// read, because a pipe or a device could block the reader.
 /// @param allowed  "(allowed: ..)";  @throws InputError that names the key if there is no such file
-[[nodiscard]] std::string read_beside(const StrictTable& table, std::string_view key,
-                                      const std::string& path, const char* allowed);
+[[nodiscard]] std::string read_referenced_file(const StrictTable& table, std::string_view key,
+                                               const std::string& path, const char* allowed);
 
 /// Reads poses from a CSV file: a header with time, x, y, z, (all or none) dx, dy, dz and
 /// optionally roll, in any order, then a row per pose, in s, m and rad; empty lines and lines that

@@ -60,10 +60,10 @@ Eigen::MatrixXd values_of(const std::vector<Pose>& poses) {
 }  // namespace
 
 std::vector<Pose> smooth_poses(std::vector<Pose> poses, double cutoff) {
-  constexpr std::size_t fewest = 3;
+  constexpr std::size_t least_count = 3;
   const double duration = poses.empty() ? 0 : poses.back().time - poses.front().time;
-  const double step = duration / static_cast<double>(std::max(fewest, poses.size()) - 1);
-  if (poses.size() < fewest || !(cutoff > 0) || !(2 * cutoff * step < 1)) {
+  const double step = duration / static_cast<double>(std::max(least_count, poses.size()) - 1);
+  if (poses.size() < least_count || !(cutoff > 0) || !(2 * cutoff * step < 1)) {
     throw std::invalid_argument(
         fmt::format("smooth_poses: cutoff = {:g} Hz of {} poses (allowed: three or more poses, > 0 "
                     "and below half of their rate, {:g} Hz)",

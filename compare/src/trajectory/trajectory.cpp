@@ -15,7 +15,7 @@ namespace {
 
 /// Tolerance within which directions count as opposite, so that no great circle between them is
 /// defined [-].
-constexpr double opposite = 1e-9;
+constexpr double opposite_tolerance = 1e-9;
 
 void require(bool holds, std::size_t pose, const char* what) {
   if (holds) return;
@@ -42,7 +42,7 @@ Trajectory::Trajectory(std::vector<Pose> poses) : poses_(std::move(poses)) {
     if (i == 0) continue;
     const Pose& last = poses_[i - 1];
     require(pose.time > last.time, i, "time is not above that of the pose before");
-    require(!pose.direction || (*pose.direction + *last.direction).norm() > opposite, i,
+    require(!pose.direction || (*pose.direction + *last.direction).norm() > opposite_tolerance, i,
             "direction is opposite to that of the pose before, so that the rotation is "
             "undetermined (allowed: a pose between them)");
   }

@@ -10,7 +10,7 @@ namespace dlo::compare {
 namespace {
 
 /// Largest difference between the axes of great circles that count as one [-].
-constexpr double same_circle = 1e-6;
+constexpr double great_circle_tolerance = 1e-6;
 
 /// Weights of Hermite's cubic between two poses, or of its time derivative.
 struct Hermite {
@@ -52,7 +52,7 @@ GreatCircle circle_between(const Eigen::Vector3d& from, const Eigen::Vector3d& t
 /// Returns the angular velocity at a pose between two great circles [rad/s]; 0 if they differ.
 double turning_rate(const GreatCircle& before, const GreatCircle& after, double h_before,
                     double h_after) {
-  if (!((before.axis - after.axis).norm() < same_circle)) return 0;
+  if (!((before.axis - after.axis).norm() < great_circle_tolerance)) return 0;
   const double s_before = before.angle / h_before;
   const double s_after = after.angle / h_after;
   const double rate = (h_after * s_before + h_before * s_after) / (h_before + h_after);

@@ -13,20 +13,20 @@ namespace {
 
 /// Part of a number's column, relative to the column, that must remain after its nuisances are
 /// removed; a smaller part is rounding.
-constexpr double least_own_share = 1e-7;
+constexpr double least_column_remainder = 1e-7;
 /// Probability below which estimates are reported to scatter.
-constexpr double significant_chance = 0.05;
+constexpr double significance_level = 0.05;
 
 /// Weighted mean of estimates with weights 1 / (variance + between): its precision, and the
 /// weighted sum of squared distances from it.
-struct Spread {
+struct WeightedScatter {
   double squares = 0;
   double precision = 0;  // inverse variance of the mean
 };
 
-Spread spread(const std::vector<ShapeEstimate>& estimates, double between) {
+WeightedScatter weighted_scatter(const std::vector<ShapeEstimate>& estimates, double between) {
   double mean = 0;
-  Spread result;
+  WeightedScatter result;
   for (const ShapeEstimate& one : estimates) {
     const double weight = 1 / (one.variance + between);
     result.precision += weight;
@@ -44,30 +44,30 @@ Spread spread(const std::vector<ShapeEstimate>& estimates, double between) {
 double variance_between(const std::vector<ShapeEstimate>& estimates, double expected) {
   double low = 0;
   double high = 1;
-  while (spread(estimates, high).squares > expected) high *= 4;
+  while (weighted_scatter(estimates, high).squares > expected) high *= 4;
   constexpr int bisections = 60;
   for (int i = 0; i < bisections; ++i) {
     const double middle = (low + high) / 2;
-    (spread(estimates, middle).squares > expected ? low : high) = middle;
+    (weighted_scatter(estimates, middle).squares > expected ? low : high) = middle;
   }
   return high;
 }
 
 /// Estimates one number from one shape. @param variance  of the innovations [m^2]
-ShapeEstimate estimate_of_shape(const Innovations& seen, double variance, Eigen::Index column,
+ShapeEstimate estimate_of_shape(const Innovations& whitened, double variance, Eigen::Index column,
                                 const std::vector<Nuisance>& nuisances) {
-  const Eigen::Index rows = seen.residual.size();
+  const Eigen::Index rows = whitened.residual.size();
   const auto count = static_cast<Eigen::Index>(nuisances.size());
   // Each prior adds a row, in units of the errors.
   Eigen::MatrixXd others = Eigen::MatrixXd::Zero(rows + count, count);
   Eigen::VectorXd own = Eigen::VectorXd::Zero(rows + count);
   Eigen::VectorXd residual = Eigen::VectorXd::Zero(rows + count);
-  own.head(rows) = seen.design.col(column);
-  residual.head(rows) = seen.residual;
+  own.head(rows) = whitened.design.col(column);
+  residual.head(rows) = whitened.residual;
   for (Eigen::Index k = 0; k < count; ++k) {
     const Nuisance& nuisance = nuisances[static_cast<std::size_t>(k)];
-    const double weight = std::sqrt(variance) / nuisance.known_before;
-    others.col(k).head(rows) = seen.design.col(nuisance.column);
+    const double weight = std::sqrt(variance) / nuisance.prior_deviation;
+    others.col(k).head(rows) = whitened.design.col(nuisance.column);
     others(rows + k, k) = weight;
     residual[rows + k] = -weight * nuisance.value;
   }
@@ -78,7 +78,7 @@ ShapeEstimate estimate_of_shape(const Innovations& seen, double variance, Eigen:
         qr.householderQ() * Eigen::MatrixXd::Identity(rows + count, qr.rank());
     own -= basis * (basis.transpose() * own).eval();
   }
-  if (!(own.norm() > least_own_share * whole)) return {0, INFINITY};
+  if (!(own.norm() > least_column_remainder * whole)) return {0, INFINITY};
   return {own.dot(residual) / own.squaredNorm(), variance / own.squaredNorm()};
 }
 
@@ -86,10 +86,10 @@ ShapeEstimate estimate_of_shape(const Innovations& seen, double variance, Eigen:
 double squared_distance(const Eigen::Vector3d& point, const Eigen::Matrix3Xd& nodes) {
   double least = std::numeric_limits<double>::infinity();
   for (Eigen::Index k = 0; k + 1 < nodes.cols(); ++k) {
-    const Eigen::Vector3d way = nodes.col(k + 1) - nodes.col(k);
+    const Eigen::Vector3d segment = nodes.col(k + 1) - nodes.col(k);
     const Eigen::Vector3d gap = point - nodes.col(k);
-    const double share = std::clamp(gap.dot(way) / way.squaredNorm(), 0.0, 1.0);
-    least = std::min(least, (gap - share * way).squaredNorm());
+    const double share = std::clamp(gap.dot(segment) / segment.squaredNorm(), 0.0, 1.0);
+    least = std::min(least, (gap - share * segment).squaredNorm());
   }
   return least;
 }
@@ -100,7 +100,7 @@ constexpr int places = 21;
 /// Returns arc lengths equally spaced over the range common to all shapes; std::nullopt for fewer
 /// than two shapes, or if the range is less than half of the longest shape.
 template <typename Of>
-std::optional<std::vector<double>> common_places(const std::vector<Of>& shapes) {
+std::optional<std::vector<double>> common_arc_lengths(const std::vector<Of>& shapes) {
   if (shapes.size() < 2) return std::nullopt;
   double low = -std::numeric_limits<double>::infinity();
   double high = std::numeric_limits<double>::infinity();
@@ -121,8 +121,9 @@ std::optional<std::vector<double>> common_places(const std::vector<Of>& shapes) 
 
 }  // namespace
 
-AcrossRod across_rod(const Shape& shape, const Shape& rod, const Eigen::Vector3d& normal) {
-  AcrossRod result;
+CrossDistances cross_distances(const Shape& shape, const Shape& rod,
+                               const Eigen::Vector3d& normal) {
+  CrossDistances result;
   const std::vector<double>& s = rod.arc_length;
   for (Eigen::Index i = 0; i < shape.points.cols(); ++i) {
     const double at = shape.arc_length[static_cast<std::size_t>(i)];
@@ -138,12 +139,12 @@ AcrossRod across_rod(const Shape& shape, const Shape& rod, const Eigen::Vector3d
   return result;
 }
 
-std::optional<double> common_share(const std::vector<AcrossRod>& shapes) {
-  const std::optional<std::vector<double>> at = common_places(shapes);
+std::optional<double> common_share(const std::vector<CrossDistances>& shapes) {
+  const std::optional<std::vector<double>> at = common_arc_lengths(shapes);
   if (!at) return std::nullopt;
   std::vector<std::vector<double>> gaps;
   gaps.reserve(shapes.size());
-  for (const AcrossRod& one : shapes) {
+  for (const CrossDistances& one : shapes) {
     gaps.push_back(interpolated(one.gap, one.arc_length, *at));
   }
   double common = 0;
@@ -161,7 +162,7 @@ std::optional<double> common_share(const std::vector<AcrossRod>& shapes) {
 }
 
 std::optional<double> repeatability(const std::vector<Shape>& shapes, ArcLengths rule) {
-  const std::optional<std::vector<double>> at = common_places(shapes);
+  const std::optional<std::vector<double>> at = common_arc_lengths(shapes);
   if (!at) return std::nullopt;
   std::vector<Eigen::Matrix3Xd> at_places;
   at_places.reserve(shapes.size());
@@ -182,9 +183,9 @@ std::optional<double> repeatability(const std::vector<Shape>& shapes, ArcLengths
   return std::sqrt(squares / (places * count));
 }
 
-double beyond_chance(double share, std::size_t shapes) {
-  const double by_chance = 1 / static_cast<double>(shapes);
-  return (share - by_chance) / (1 - by_chance);
+double share_beyond_chance(double share, std::size_t shapes) {
+  const double expected_share = 1 / static_cast<double>(shapes);
+  return (share - expected_share) / (1 - expected_share);
 }
 
 std::vector<Nuisance> frame_nuisances(Eigen::Index frames) {
@@ -211,17 +212,17 @@ std::vector<ShapeEstimate> estimates_of_shapes(
 
 std::optional<ScatterBetweenShapes> scatter_between(const std::vector<ShapeEstimate>& estimates,
                                                     double quantile) {
-  std::vector<ShapeEstimate> telling;
-  std::copy_if(estimates.begin(), estimates.end(), std::back_inserter(telling),
+  std::vector<ShapeEstimate> informative;
+  std::copy_if(estimates.begin(), estimates.end(), std::back_inserter(informative),
                [](const ShapeEstimate& one) { return std::isfinite(one.variance); });
-  if (telling.size() < 2) return std::nullopt;
-  const auto freedom = static_cast<double>(telling.size() - 1);
-  const Spread together = spread(telling, 0);
+  if (informative.size() < 2) return std::nullopt;
+  const auto freedom = static_cast<double>(informative.size() - 1);
+  const WeightedScatter together = weighted_scatter(informative, 0);
   const double chance = gsl_distribution(gsl_cdf_chisq_Q, together.squares, freedom);
-  if (!(chance < significant_chance)) return std::nullopt;
-  const double between = variance_between(telling, freedom);
+  if (!(chance < significance_level)) return std::nullopt;
+  const double between = variance_between(informative, freedom);
   const double with = gsl_distribution(gsl_cdf_tdist_Pinv, 0.975, freedom) /
-                      std::sqrt(spread(telling, between).precision);
+                      std::sqrt(weighted_scatter(informative, between).precision);
   const double without = quantile / std::sqrt(together.precision);
   return ScatterBetweenShapes{.relative_deviation = std::sqrt(between),
                               .chance = chance,

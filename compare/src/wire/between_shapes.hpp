@@ -20,8 +20,8 @@ struct ShapeEstimate {
 /// Another number that is eliminated from the estimate of one shape: a column of its design.
 struct Nuisance {
   Eigen::Index column = 0;
-  double value = 0;         ///< current value
-  double known_before = 0;  ///< prior standard deviation about zero; infinite: no prior
+  double value = 0;            ///< current value
+  double prior_deviation = 0;  ///< prior standard deviation about zero; infinite: no prior
 };
 
 /// Returns nuisances without priors for the frames.
@@ -37,7 +37,7 @@ struct Nuisance {
     Eigen::Index column, const std::vector<std::vector<Nuisance>>& nuisances);
 
 /// Distances of a shape's points across its rod, in a plane that all shapes share.
-struct AcrossRod {
+struct CrossDistances {
   std::vector<double> arc_length;  ///< non-decreasing [m]
   std::vector<double> gap;         ///< distance of each point to the rod's left [m]
 };
@@ -46,14 +46,14 @@ struct AcrossRod {
 /// @param normal  of the plane
 /// @param shape  aligned with the rod
 /// @param rod  sampled at many arc lengths
-[[nodiscard]] AcrossRod across_rod(const Shape& shape, const Shape& rod,
-                                   const Eigen::Vector3d& normal);
+[[nodiscard]] CrossDistances cross_distances(const Shape& shape, const Shape& rod,
+                                             const Eigen::Vector3d& normal);
 
 /// Returns the share of the mean square that all shapes have in common at equal arc lengths: N
 /// |mean|^2 divided by the sum of squares. It is 1 / N for independent shapes and 1 for equal ones.
 /// Returns std::nullopt for fewer than two shapes, or if less than half of their arc lengths is
 /// common.
-[[nodiscard]] std::optional<double> common_share(const std::vector<AcrossRod>& shapes);
+[[nodiscard]] std::optional<double> common_share(const std::vector<CrossDistances>& shapes);
 
 /// Returns the RMS, over all shapes, of the distance of a shape from the mean of the others [m],
 /// measured as the distance from a rod: at equal arc lengths with `file`, else to the nearest point
@@ -63,7 +63,7 @@ struct AcrossRod {
                                                   ArcLengths rule);
 
 /// Rescales common_share(), so that 0 is the value expected by chance and 1 that of equal shapes.
-[[nodiscard]] double beyond_chance(double share, std::size_t shapes);
+[[nodiscard]] double share_beyond_chance(double share, std::size_t shapes);
 
 /// Tests whether estimates differ by more than their variances explain (Cochran's Q, probability
 /// below 1/20), and returns the effect on the interval of their mean. Returns std::nullopt if they

@@ -16,12 +16,12 @@ namespace {
 
 /// Largest difference between grippers that hold a rod in the same way: of positions divided by the
 /// length, and of directions.
-constexpr double alike = 0.02;
+constexpr double same_experiment_tolerance = 0.02;
 
 /// Replaces the arc lengths of an aligned shape that covers the whole rod by lengths along its own
 /// points, because nearest points on the rod depend on the other fitted numbers.
 Shape with_arc_lengths_along_points(Shape shape, double length) {
-  const std::vector<double> s = lengths_along(shape.points);
+  const std::vector<double> s = arc_lengths_along(shape.points);
   constexpr double whole = 0.97;
   if (s.back() < whole * length) return shape;
   for (std::size_t i = 0; i < s.size(); ++i) shape.arc_length[i] = s[i] * length / s.back();
@@ -29,33 +29,35 @@ Shape with_arc_lengths_along_points(Shape shape, double length) {
 }
 
 std::optional<double> repeatability_of(const std::vector<Scene>& scenes, const MaterialFit& fit) {
-  if (!std::all_of(scenes.begin(), scenes.end(),
-                   [&](const Scene& scene) { return are_alike(scene, scenes.front()); })) {
+  if (!std::all_of(scenes.begin(), scenes.end(), [&](const Scene& scene) {
+        return are_same_experiment(scene, scenes.front());
+      })) {
     return std::nullopt;
   }
   std::vector<Shape> shapes;
   shapes.reserve(fit.shapes.size());
   for (const FittedShape& fitted : fit.shapes) {
-    const Alignment& laid = fitted.alignment;
-    shapes.push_back(laid.arc_lengths == ArcLengths::file
-                         ? laid.shape
-                         : with_arc_lengths_along_points(laid.shape, scenes.front().length));
+    const Alignment& aligned = fitted.alignment;
+    shapes.push_back(aligned.arc_lengths == ArcLengths::file
+                         ? aligned.shape
+                         : with_arc_lengths_along_points(aligned.shape, scenes.front().length));
   }
   return repeatability(shapes, fit.shapes.front().alignment.arc_lengths);
 }
 
 }  // namespace
 
-bool are_alike(const Scene& a, const Scene& b) {
+bool are_same_experiment(const Scene& a, const Scene& b) {
   return a.length == b.length &&
-         std::equal(
-             a.grippers.begin(), a.grippers.end(), b.grippers.begin(), b.grippers.end(),
-             [&](const Gripper& one, const Gripper& other) {
-               return one.at == other.at &&
-                      one.direction.has_value() == other.direction.has_value() &&
-                      (!one.direction || (*one.direction - *other.direction).norm() <= alike) &&
-                      (one.position - other.position).norm() <= alike * a.length;
-             });
+         std::equal(a.grippers.begin(), a.grippers.end(), b.grippers.begin(), b.grippers.end(),
+                    [&](const Gripper& one, const Gripper& other) {
+                      return one.at == other.at &&
+                             one.direction.has_value() == other.direction.has_value() &&
+                             (!one.direction || (*one.direction - *other.direction).norm() <=
+                                                    same_experiment_tolerance) &&
+                             (one.position - other.position).norm() <=
+                                 same_experiment_tolerance * a.length;
+                    });
 }
 
 std::vector<std::string> unfitted_assumptions(const std::vector<Scene>& scenes,
@@ -63,8 +65,10 @@ std::vector<std::string> unfitted_assumptions(const std::vector<Scene>& scenes,
   constexpr int enough = 3;
   int different = 0;
   for (auto scene = scenes.begin(); scene != scenes.end(); ++scene) {
-    const auto is_like = [&](const Scene& before) { return are_alike(before, *scene); };
-    different += std::none_of(scenes.begin(), scene, is_like) ? 1 : 0;
+    const auto is_same_scene = [&](const Scene& before) {
+      return are_same_experiment(before, *scene);
+    };
+    different += std::none_of(scenes.begin(), scene, is_same_scene) ? 1 : 0;
   }
   std::vector<std::string> result;
   if (different >= enough) return result;
@@ -96,12 +100,12 @@ Prediction leave_one_out(const std::vector<Scene>& scenes, const std::vector<Mea
   Prediction result{.repeatability_m = repeatability_of(scenes, fit)};
   double squares = 0;
   double points = 0;
-  for (std::size_t left = 0; left < scenes.size(); ++left) {
-    const PredictedScene predicted = predict(left);
-    const double rms = distance_from_rod(predicted.scene, shapes[left], options,
+  for (std::size_t excluded = 0; excluded < scenes.size(); ++excluded) {
+    const PredictedScene predicted = predict(excluded);
+    const double rms = distance_from_rod(predicted.scene, shapes[excluded], options,
                                          predicted.known ? &*predicted.known : nullptr);
     result.shapes_m.push_back(rms);
-    const auto count = static_cast<double>(shapes[left].points.cols());
+    const auto count = static_cast<double>(shapes[excluded].points.cols());
     squares += rms * rms * count;
     points += count;
   }

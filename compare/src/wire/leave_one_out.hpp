@@ -21,7 +21,7 @@ namespace dlo::compare {
 
 /// Whether two scenes are the same experiment, up to the accuracy with which a gripper is put back
 /// into its place.
-[[nodiscard]] bool are_alike(const Scene& a, const Scene& b);
+[[nodiscard]] bool are_same_experiment(const Scene& a, const Scene& b);
 
 /// Returns which of "natural curvature" and "clamp directions" are not fitted, if the shapes are of
 /// fewer than three different scenes: an error of these may then leave no residual.
@@ -33,7 +33,7 @@ struct PredictedScene {
   Scene scene;
   std::optional<energy_model::Equilibrium> known;  ///< equilibrium near the observed one
 };
-using Predict = std::function<PredictedScene(std::size_t left)>;
+using Predict = std::function<PredictedScene(std::size_t excluded)>;
 
 /// Predicts each shape by the fit to all others with the same options, and returns the distances.
 /// @param fit  fit to all shapes, which determines the arc lengths of their points
@@ -45,8 +45,8 @@ using Predict = std::function<PredictedScene(std::size_t left)>;
 
 /// Returns all values except one.
 template <typename Value>
-[[nodiscard]] std::vector<Value> all_but(std::vector<Value> values, std::size_t left) {
-  values.erase(values.begin() + static_cast<std::ptrdiff_t>(left));
+[[nodiscard]] std::vector<Value> without_one(std::vector<Value> values, std::size_t excluded) {
+  values.erase(values.begin() + static_cast<std::ptrdiff_t>(excluded));
   return values;
 }
 

@@ -21,7 +21,7 @@ namespace {
 
 /// Distance of the material's log E from the scene's above which both are tried as starts: the E
 /// that fits best without the other numbers may differ from the one with them.
-constexpr double far_away = 0.7;
+constexpr double distant_log_modulus = 0.7;
 
 /// Rods and own numbers of each shape that are nearest to its points among several trials.
 struct NearestStart {
@@ -31,7 +31,7 @@ struct NearestStart {
 
   [[nodiscard]] double sum() const { return std::accumulate(squares.begin(), squares.end(), 0.0); }
 
-  void take_nearer(const WireProblem& problem, const FittedRods::State& state,
+  void keep_nearer(const WireProblem& problem, const FittedRods::State& state,
                    const Eigen::VectorXd& others) {
     if (squares.empty()) {
       *this = {state.squares, state.rods, others};
@@ -43,7 +43,7 @@ struct NearestStart {
       rods[i] = state.rods[i];
       for (std::size_t k = 0; k < problem.numbers.size(); ++k) {
         const auto number = static_cast<Eigen::Index>(k);
-        if (problem.is_own(k, i)) values[number] = others[number];
+        if (problem.belongs_to_shape(k, i)) values[number] = others[number];
       }
     }
   }
@@ -52,7 +52,7 @@ struct NearestStart {
 /// Whether the mean natural curvature is fitted about both axes of the section; the number about d2
 /// is the first.
 bool is_about_both_axes(const WireProblem& problem) {
-  const auto second = static_cast<std::size_t>(problem.first_of_others()) + 1;
+  const auto second = static_cast<std::size_t>(problem.first_remaining_number()) + 1;
   return second < problem.numbers.size() && problem.numbers[second].term == 0 &&
          problem.numbers[second].described.unit == "1/m";
 }
@@ -65,31 +65,31 @@ std::vector<NearestStart> nearest_by_curvature(const WireProblem& problem,
                                                const Eigen::VectorXd& from, FittedRods& rods) {
   constexpr std::array turns = {8.0, 5.0, 3.0, 1.5, 0.0, -1.5, -3.0, -5.0, -8.0};
   constexpr int angles = 6;
-  const bool turns_the_rod =
-      std::ranges::any_of(problem.numbers, [](const WireNumber& one) { return one.turns_the_rod; });
+  const bool rotates_rod =
+      std::ranges::any_of(problem.numbers, [](const WireNumber& one) { return one.rotates_rod; });
   const bool both_axes = is_about_both_axes(problem);
   // Negative turns represent the opposite axes.
   const int directions = both_axes ? angles / 2 : 1;
   std::vector<NearestStart> found(directions * turns.size());
-  for (int i = 0; i < directions * (turns_the_rod ? angles : 1); ++i) {
+  for (int i = 0; i < directions * (rotates_rod ? angles : 1); ++i) {
     const int direction = i % directions;
     const int angle = i / directions;
-    const auto look_at = [&](std::size_t k) {
+    const auto add_best_start = [&](std::size_t k) {
       Eigen::VectorXd values = from;
       const double curvature = turns[k] / problem.scenes.front().length;
       const double about = 2 * std::numbers::pi * direction / angles;
-      values[problem.first_of_others()] = curvature * std::cos(about);
-      if (both_axes) values[problem.first_of_others() + 1] = curvature * std::sin(about);
+      values[problem.first_remaining_number()] = curvature * std::cos(about);
+      if (both_axes) values[problem.first_remaining_number() + 1] = curvature * std::sin(about);
       for (std::size_t n = 0; n < problem.numbers.size(); ++n) {
-        if (!problem.numbers[n].turns_the_rod) continue;
+        if (!problem.numbers[n].rotates_rod) continue;
         values[static_cast<Eigen::Index>(n)] = 2 * std::numbers::pi * angle / angles;
       }
-      found[direction * turns.size() + k].take_nearer(problem, rods.state(values), values);
+      found[direction * turns.size() + k].keep_nearer(problem, rods.state(values), values);
     };
-    rods.search_next();
-    for (std::size_t k = 0; k < turns.size(); ++k) look_at(k);
-    rods.search_next();
-    for (std::size_t k = turns.size(); k-- > 0;) look_at(k);
+    rods.clear_initial_rods();
+    for (std::size_t k = 0; k < turns.size(); ++k) add_best_start(k);
+    rods.clear_initial_rods();
+    for (std::size_t k = turns.size(); k-- > 0;) add_best_start(k);
   }
   return found;
 }
@@ -125,28 +125,28 @@ std::vector<Start> starts_by_curvature(const WireProblem& problem, FittedRods& r
 
 /// Sets rods and values to the fit of least variance among those that coarse fits reach from the
 /// starts.
-void go_to_best(const WireProblem& problem, const std::vector<Start>& starts, FittedRods& rods,
-                Eigen::VectorXd& values) {
+void set_to_best_start(const WireProblem& problem, const std::vector<Start>& starts,
+                       FittedRods& rods, Eigen::VectorXd& values) {
   double least = INFINITY;
   FittedRods::Rods nearest(problem.scenes.size());
   for (const Start& start : starts) {
-    rods.go_on_from(start.rods);
-    GaussNewton fit(rods, start.values, problem.coarse_steps());
+    rods.set_initial_rods(start.rods);
+    GaussNewton fit(rods, start.values, problem.coarse_iteration_options());
     if (!fit.descend() || !(fit.variance() < least)) continue;
     least = fit.variance();
     nearest = fit.rods();
     values = fit.values();
   }
-  rods.go_on_from(std::move(nearest));
+  rods.set_initial_rods(std::move(nearest));
 }
 
 /// Chooses the start for E. If the rod is not held as the scene states, the E that fits best with
 /// the scene's grips may be far away, so the fit also starts at the scene's E.
-void look_for_modulus(const WireProblem& problem, FittedRods& rods, Eigen::VectorXd& values) {
+void choose_modulus_start(const WireProblem& problem, FittedRods& rods, Eigen::VectorXd& values) {
   const FittedRods::Rods none(problem.scenes.size());
-  Eigen::VectorXd said = values;
-  said[0] = 0;
-  go_to_best(problem, {{values, none}, {said, none}}, rods, values);
+  Eigen::VectorXd without_first = values;
+  without_first[0] = 0;
+  set_to_best_start(problem, {{values, none}, {without_first, none}}, rods, values);
 }
 
 /// Adds terms of natural curvature one by one, each fit starting at the result without the new
@@ -154,11 +154,11 @@ void look_for_modulus(const WireProblem& problem, FittedRods& rods, Eigen::Vecto
 void fit_fewer_terms(const WireProblem& problem, FittedRods& rods, Eigen::VectorXd& values) {
   for (int terms = 1; terms < problem.options.natural_curvature_terms; ++terms) {
     FittedRods fewer = problem.rods(terms);
-    fewer.go_on_from(rods.rods());
-    GaussNewton fit(fewer, values, problem.coarse_steps());
+    fewer.set_initial_rods(rods.rods());
+    GaussNewton fit(fewer, values, problem.coarse_iteration_options());
     if (!fit.descend()) return;
     values = fit.values();
-    rods.go_on_from(fit.rods());
+    rods.set_initial_rods(fit.rods());
   }
 }
 
@@ -169,17 +169,17 @@ void fit_fewer_terms(const WireProblem& problem, FittedRods& rods, Eigen::Vector
 /// the limit.)
 constexpr std::size_t most_starts = 4;
 
-void look_for_curvature(const WireProblem& problem, FittedRods& rods, Eigen::VectorXd& values) {
+void choose_curvature_start(const WireProblem& problem, FittedRods& rods, Eigen::VectorXd& values) {
   std::vector<Start> starts = starts_by_curvature(problem, rods, values);
   if (starts.empty()) return;
   starts.resize(std::min(starts.size(), most_starts));
   values = starts.front().values;
-  rods.go_on_from(starts.front().rods);
+  rods.set_initial_rods(starts.front().rods);
   fit_fewer_terms(problem, rods, values);
   for (std::size_t i = 0; i < problem.shapes.size(); ++i) {
     if (problem.measured.is_flat(i)) continue;
     starts.insert(starts.begin(), {values, rods.rods()});
-    return go_to_best(problem, starts, rods, values);
+    return set_to_best_start(problem, starts, rods, values);
   }
 }
 
@@ -192,48 +192,48 @@ Eigen::VectorXd wire_start(const WireProblem& problem, const MaterialPoint& mate
   if (material.log_modulus > problem.lowest()) values[0] = material.log_modulus;
   if (problem.density) values[1] = material.log_density;
   if (problem.options.natural_curvature_terms > 0) {
-    look_for_curvature(problem, rods, values);
-  } else if (std::abs(values[0]) > far_away) {
-    look_for_modulus(problem, rods, values);
+    choose_curvature_start(problem, rods, values);
+  } else if (std::abs(values[0]) > distant_log_modulus) {
+    choose_modulus_start(problem, rods, values);
   }
   return values;
 }
 
 /// Predicts the scene of a shape by the fit to the others, which starts at the fit to all and uses
 /// its weights. Numbers that belong to the shape alone are set to zero.
-PredictedScene predicted(const WireProblem& problem, const WireOptimum& all, std::size_t left) {
-  const std::vector<Scene> scenes = all_but(problem.scenes, left);
-  const std::vector<MeasuredShape> shapes = all_but(problem.shapes, left);
+PredictedScene predicted(const WireProblem& problem, const WireOptimum& all, std::size_t excluded) {
+  const std::vector<Scene> scenes = without_one(problem.scenes, excluded);
+  const std::vector<MeasuredShape> shapes = without_one(problem.shapes, excluded);
   MeasuredShapes measured(scenes, shapes, measured_options(problem.options), Timer());
   WireProblem others(scenes, shapes, measured, problem.options, problem.density);
   std::vector<Eigen::Index> common;
   for (std::size_t k = 0; k < problem.numbers.size(); ++k) {
-    if (problem.is_own(k, left)) continue;
-    others.numbers[common.size()].stride = problem.numbers[k].stride;
+    if (problem.belongs_to_shape(k, excluded)) continue;
+    others.numbers[common.size()].difference_step = problem.numbers[k].difference_step;
     common.push_back(static_cast<Eigen::Index>(k));
   }
   FittedRods rods = others.rods(problem.options.natural_curvature_terms);
-  rods.go_on_from(all_but(all.rods(), left));
+  rods.set_initial_rods(without_one(all.rods(), excluded));
   GaussNewton fit(rods, all.values()(common), others.steps());
-  fit.weigh(all.fit().weight());
+  fit.set_data_variance(all.fit().weight());
   others.descend(fit);
   Eigen::VectorXd values = Eigen::VectorXd::Zero(all.values().size());
   values(common) = fit.values();
-  return {problem.scene_at(left, values), all.rods()[left]};
+  return {problem.scene_at(excluded, values), all.rods()[excluded]};
 }
 
 /// Returns the index of the term of natural curvature that the shapes determine least, among the
 /// nonzero terms that they determine less than the prior does; std::nullopt if there is no such
 /// term.
 std::optional<std::size_t> undetermined_term(const WireProblem& problem, const MaterialFit& fit) {
-  const auto first = static_cast<std::size_t>(problem.first_of_others());
+  const auto first = static_cast<std::size_t>(problem.first_remaining_number());
   std::optional<std::size_t> result;
   double largest = 0;
   for (std::size_t k = 0; k < fit.others.size(); ++k) {
     const FittedNumber& number = fit.others[k];
-    const bool is_term = number.unit == "1/m" && problem.numbers[first + k].stride > 0;
-    if (!is_term || number.is_seen() || number.value == 0) continue;
-    const double share = number.deviation / number.known_before;
+    const bool is_term = number.unit == "1/m" && problem.numbers[first + k].difference_step > 0;
+    if (!is_term || number.is_determined_by_shapes() || number.value == 0) continue;
+    const double share = number.deviation / number.prior_deviation;
     if (!(share > largest)) continue;
     largest = share;
     result = first + k;
@@ -249,16 +249,16 @@ MaterialFit determined_fit(const WireProblem& problem, WireOptimum& optimum) {
   MaterialFit fit = wire_result(problem, optimum);
   if (const std::optional<std::size_t> term = undetermined_term(problem, fit)) {
     WireProblem fewer = problem;
-    fewer.numbers[*term].stride = 0;
+    fewer.numbers[*term].difference_step = 0;
     FittedRods rods = fewer.rods(options.natural_curvature_terms);
-    rods.go_on_from(optimum.rods());
+    rods.set_initial_rods(optimum.rods());
     Eigen::VectorXd values = optimum.values();
     values[static_cast<Eigen::Index>(*term)] = 0;
     WireOptimum other(fewer, rods, values);
     MaterialFit result = determined_fit(fewer, other);
     // The shapes do not determine the term, which does not mean that it is zero.
     const bool is_identified =
-        include_interval(result.youngs_modulus, fit.youngs_modulus, options.identified_within);
+        include_interval(result.youngs_modulus, fit.youngs_modulus, options.largest_interval_ratio);
     if (!is_identified && result.not_identified.empty()) {
       result.not_identified = fit.not_identified;
     }
@@ -267,7 +267,7 @@ MaterialFit determined_fit(const WireProblem& problem, WireOptimum& optimum) {
   if (options.predict) {
     fit.prediction =
         leave_one_out(problem.scenes, problem.shapes, options, fit,
-                      [&](std::size_t left) { return predicted(problem, optimum, left); });
+                      [&](std::size_t excluded) { return predicted(problem, optimum, excluded); });
   }
   return fit;
 }

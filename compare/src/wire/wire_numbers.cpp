@@ -20,20 +20,20 @@ namespace {
 /// Stride of the differences by each number, relative or in rad. A rod next to the limit of its
 /// stability responds far from linearly; with 1e-3, steps of the fit pointed uphill 1e-4 before the
 /// optimum. The solver's error (1e-10 l) changes the differences by 1e-6.
-constexpr double stride = 1e-4;
+constexpr double difference_step = 1e-4;
 
 /// Prior standard deviation of each term of natural curvature, times the length [rad]. It is large,
 /// because the stress-free shape may have several whole turns.
-constexpr double natural_turns_before = 10;
+constexpr double prior_curvature_deviation = 10;
 
 /// Prior standard deviation of ln(GJ / EI): a factor of ten.
-constexpr double torsion_before = 2.3;
+constexpr double prior_torsion_deviation = 2.3;
 
 /// Longest step of a roll for which the fit is nearly linear [rad].
 constexpr double longest_roll_step = 0.5;
 /// Prior deviation of a roll above which several starts are tried; below it the fit starts at the
 /// scene's roll only [rad].
-constexpr double unknown_roll = 0.7;
+constexpr double searched_roll_deviation = 0.7;
 
 constexpr double unknown = std::numeric_limits<double>::infinity();
 
@@ -54,7 +54,7 @@ void add_natural_curvature(std::vector<WireNumber>& numbers, const std::vector<S
     planar = planar && plane_of(scenes[i], shapes[i]).has_value();
   }
   // If the roll of the rod is unknown, its mean curvature is about d2 by definition.
-  const bool turned = options.roll_tolerance > unknown_roll;
+  const bool turned = options.roll_tolerance > searched_roll_deviation;
   for (const Scene& scene : scenes) {
     if (scene.rest_shape) {
       throw InputError(
@@ -63,7 +63,7 @@ void add_natural_curvature(std::vector<WireNumber>& numbers, const std::vector<S
                       scene.file));
     }
     Scene bent = scene;
-    bend_by_nature(bent, 0, {0, 1 / scene.length});
+    increase_natural_curvature(bent, 0, {0, 1 / scene.length});
     (void)bent.first_frame();
   }
   const double length = scenes.front().length;
@@ -74,11 +74,12 @@ void add_natural_curvature(std::vector<WireNumber>& numbers, const std::vector<S
       numbers.push_back({{.name = fmt::format("natural curvature{}, P_{}",
                                               planar ? "" : fmt::format(" about d{}", axis), term),
                           .unit = "1/m",
-                          .known_before = natural_turns_before / length,
+                          .prior_deviation = prior_curvature_deviation / length,
                           .shape = std::nullopt},
-                         stride / length,
+                         difference_step / length,
                          [about, term](Scene& scene, double value) {
-                           bend_by_nature(scene, static_cast<std::size_t>(term), value * about);
+                           increase_natural_curvature(scene, static_cast<std::size_t>(term),
+                                                      value * about);
                          },
                          term});
     }
@@ -94,8 +95,8 @@ void add_torsion(std::vector<WireNumber>& numbers, const std::vector<Scene>& sce
                     scenes.front().file));
   }
   numbers.push_back(
-      {{.name = "", .unit = "", .known_before = torsion_before, .shape = std::nullopt},
-       stride,
+      {{.name = "", .unit = "", .prior_deviation = prior_torsion_deviation, .shape = std::nullopt},
+       difference_step,
        [](Scene& scene, double value) { scene.scale_torsion(std::exp(value)); }});
 }
 
@@ -104,18 +105,18 @@ void add_directions(std::vector<WireNumber>& numbers, const Scene& scene,
                     const std::optional<Eigen::Vector3d>& normal, double tolerance) {
   for (std::size_t i = 0; i < scene.grippers.size(); ++i) {
     if (!scene.grippers[i].direction) continue;
-    const Eigen::Matrix3Xd ways = ways_across(*scene.grippers[i].direction, normal);
+    const Eigen::Matrix3Xd ways = rotation_axes(*scene.grippers[i].direction, normal);
     for (Eigen::Index k = 0; k < ways.cols(); ++k) {
       const Eigen::Vector3d axis = ways.col(k);
       numbers.push_back({{.name = fmt::format("direction of gripper {}, about [{:.3g}, {:.3g}, "
                                               "{:.3g}]",
                                               i + 1, axis.x(), axis.y(), axis.z()),
                           .unit = "rad",
-                          .known_before = tolerance,
+                          .prior_deviation = tolerance,
                           .shape = shape},
-                         stride,
+                         difference_step,
                          [i, axis](Scene& changed, double value) {
-                           turn_clamp(changed.grippers[i], value * axis);
+                           rotate_clamp(changed.grippers[i], value * axis);
                          }});
     }
   }
@@ -124,7 +125,7 @@ void add_directions(std::vector<WireNumber>& numbers, const Scene& scene,
 void add_positions(std::vector<WireNumber>& numbers, const Scene& scene,
                    const std::optional<std::size_t>& shape,
                    const std::optional<Eigen::Vector3d>& normal, double tolerance) {
-  const Eigen::Matrix3Xd ways = ways_of_place(normal);
+  const Eigen::Matrix3Xd ways = translation_directions(normal);
   for (std::size_t i = 0; i < scene.grippers.size(); ++i) {
     for (Eigen::Index k = 0; k < ways.cols(); ++k) {
       const Eigen::Vector3d axis = ways.col(k);
@@ -132,7 +133,7 @@ void add_positions(std::vector<WireNumber>& numbers, const Scene& scene,
                                               "{:.3g}]",
                                               i + 1, axis.x(), axis.y(), axis.z()),
                           .unit = "m",
-                          .known_before = tolerance,
+                          .prior_deviation = tolerance,
                           .shape = shape},
                          1e-4 * scene.length,
                          [i, axis](Scene& changed, double value) {
@@ -152,7 +153,7 @@ Gripper* first_clamp(Scene& scene) {
 }
 
 /// Whether a roll of the first clamp does not change any shape.
-bool is_alike_all_around(const Scene& scene, const MaterialFitOptions& options) {
+bool is_roll_invariant(const Scene& scene, const MaterialFitOptions& options) {
   return options.natural_curvature_terms == 0 && !scene.has_material_directors();
 }
 
@@ -162,24 +163,25 @@ void add_rolls(std::vector<WireNumber>& numbers, Scene scene, std::size_t shape,
   bool is_first = true;
   for (std::size_t i = 0; i < scene.grippers.size(); ++i) {
     if (!scene.grippers[i].frame) continue;
-    const bool turns_the_rod = &scene.grippers[i] == first;
-    const bool is_gauge = std::exchange(is_first, false) && is_alike_all_around(scene, options);
+    const bool rotates_rod = &scene.grippers[i] == first;
+    const bool is_gauge = std::exchange(is_first, false) && is_roll_invariant(scene, options);
     if (is_gauge) continue;
     numbers.push_back(
         {.described = {.name = fmt::format("roll of gripper {}", i + 1),
                        .unit = "rad",
-                       .known_before = options.roll_tolerance,
+                       .prior_deviation = options.roll_tolerance,
                        .shape = shape},
-         .stride = stride,
+         .difference_step = difference_step,
          .change = [i](Scene& changed, double value) { changed.grippers[i].frame->roll += value; },
          .longest_step = longest_roll_step,
-         .turns_the_rod = turns_the_rod && options.roll_tolerance > unknown_roll});
+         .rotates_rod = rotates_rod && options.roll_tolerance > searched_roll_deviation});
   }
 }
 
 /// Returns a unit vector perpendicular to a direction and to gravity, or to the direction alone if
 /// the two are parallel.
-Eigen::Vector3d level_across(const Eigen::Vector3d& direction, const Eigen::Vector3d& gravity) {
+Eigen::Vector3d horizontal_normal(const Eigen::Vector3d& direction,
+                                  const Eigen::Vector3d& gravity) {
   const Eigen::Vector3d level = gravity.cross(direction);
   constexpr double upright = 1e-6;
   return level.norm() > upright * gravity.norm() ? Eigen::Vector3d(level.normalized())
@@ -194,23 +196,23 @@ void add_camera_tilt(std::vector<WireNumber>& numbers, const std::vector<Scene>&
     throw InputError(why);
   }
   const Eigen::Matrix3Xd ways =
-      ways_across(scenes.front().gravity.normalized(), plane_of(scenes.front(), shapes.front()));
+      rotation_axes(scenes.front().gravity.normalized(), plane_of(scenes.front(), shapes.front()));
   for (const Eigen::Vector3d axis : ways.colwise()) {
     numbers.push_back(
         {.described = {.name = fmt::format("camera tilt about [{:.3g}, {:.3g}, {:.3g}]", axis.x(),
                                            axis.y(), axis.z()),
                        .unit = "rad",
-                       .known_before = tolerance,
+                       .prior_deviation = tolerance,
                        .shape = std::nullopt},
-         .stride = stride,
-         .change = [axis](Scene& scene, double value) { turn_scene(scene, value * axis); },
+         .difference_step = difference_step,
+         .change = [axis](Scene& scene, double value) { rotate_scene(scene, value * axis); },
          .camera_axis = axis});
   }
 }
 
 /// Checks that all scenes have the same clamps, since only then the clamps' errors can be shared.
 /// @throws InputError
-void require_like_clamps(const std::vector<Scene>& scenes) {
+void require_equal_clamps(const std::vector<Scene>& scenes) {
   const std::vector<Gripper>& first = scenes.front().grippers;
   for (const Scene& scene : scenes) {
     const bool alike =
@@ -253,8 +255,8 @@ std::string why_no_camera_tilt(const std::vector<Scene>& scenes,
   return "";
 }
 
-std::vector<Scene> with_said_frames(std::vector<Scene> scenes, const std::vector<bool>& flat,
-                                    const MaterialFitOptions& options) {
+std::vector<Scene> with_nominal_frames(std::vector<Scene> scenes, const std::vector<bool>& flat,
+                                       const MaterialFitOptions& options) {
   const bool turned = options.direction_tolerance > 0 || options.roll_tolerance > 0;
   if (options.natural_curvature_terms == 0 || !turned) return scenes;
   for (std::size_t i = 0; i < scenes.size(); ++i) {
@@ -264,7 +266,7 @@ std::vector<Scene> with_said_frames(std::vector<Scene> scenes, const std::vector
     Scene bent = scenes[i];
     bent.natural_strain.y() += 1 / bent.length;
     const bool is_open = options.roll_tolerance > 0 && !bent.plane_normal();
-    const Eigen::Vector3d d1 = is_open ? level_across(*first->direction, scenes[i].gravity)
+    const Eigen::Vector3d d1 = is_open ? horizontal_normal(*first->direction, scenes[i].gravity)
                                        : Eigen::Vector3d(bent.first_frame().col(0));
     first->frame = FrameHold{.d1 = d1, .roll = roll};
   }
@@ -276,13 +278,13 @@ std::vector<WireNumber> wire_numbers(const std::vector<Scene>& scenes,
                                      const MaterialFitOptions& options, bool density) {
   std::vector<WireNumber> numbers;
   // Without forces, differences by E are rounding, or movements along a family of equilibria.
-  const bool forced = std::any_of(scenes.begin(), scenes.end(), is_forced);
+  const bool forced = std::any_of(scenes.begin(), scenes.end(), has_external_force);
   const FittedNumber of_wire{
-      .name = "", .unit = "", .known_before = unknown, .shape = std::nullopt};
-  numbers.push_back({of_wire, forced ? stride : 0,
+      .name = "", .unit = "", .prior_deviation = unknown, .shape = std::nullopt};
+  numbers.push_back({of_wire, forced ? difference_step : 0,
                      [](Scene& scene, double value) { scene.scale_modulus(std::exp(value)); }});
   if (density) {
-    numbers.push_back({of_wire, stride,
+    numbers.push_back({of_wire, difference_step,
                        [](Scene& scene, double value) { scene.scale_density(std::exp(value)); }});
   }
   if (options.torsional_stiffness) add_torsion(numbers, scenes);
@@ -290,7 +292,7 @@ std::vector<WireNumber> wire_numbers(const std::vector<Scene>& scenes,
     add_natural_curvature(numbers, scenes, shapes, options);
   }
   const std::size_t sets = options.shared_clamps ? 1 : scenes.size();
-  if (options.shared_clamps) require_like_clamps(scenes);
+  if (options.shared_clamps) require_equal_clamps(scenes);
   for (std::size_t i = 0; i < sets; ++i) {
     const std::optional<Eigen::Vector3d> normal = plane_of(scenes[i], shapes[i]);
     const std::optional<std::size_t> own = options.shared_clamps ? std::nullopt : std::optional(i);

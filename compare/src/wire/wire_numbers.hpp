@@ -17,14 +17,15 @@ namespace dlo::compare {
 struct WireNumber {
   /// Description of the number; its value is not used, and an infinite deviation means no prior.
   FittedNumber described;
-  double stride = 0;  ///< stride of differences, in the number's unit; 0: no shape depends on it
+  double difference_step =
+      0;  ///< stride of differences, in the number's unit; 0: no shape depends on it
   std::function<void(Scene&, double)> change;
   int term = 0;  ///< index of the term of natural curvature; 0 for all other numbers
   double longest_step = std::numeric_limits<double>::infinity();  ///< longest step for which the
                                                                   ///< fit is nearly linear
   /// Whether it rotates the first clamp of a rod whose frame affects the shape, so that all angles
   /// must be tried.
-  bool turns_the_rod = false;
+  bool rotates_rod = false;
   std::optional<Eigen::Vector3d> camera_axis = std::nullopt;  ///< axis of a camera's tilt, unit
 };
 
@@ -50,15 +51,15 @@ struct WireNumber {
 /// `roll_tolerance`, d1 is level.
 /// @param flat  for each scene, whether its shape was measured in the scene's plane, which
 /// determines d1
-[[nodiscard]] std::vector<Scene> with_said_frames(std::vector<Scene> scenes,
-                                                  const std::vector<bool>& flat,
-                                                  const MaterialFitOptions& options);
+[[nodiscard]] std::vector<Scene> with_nominal_frames(std::vector<Scene> scenes,
+                                                     const std::vector<bool>& flat,
+                                                     const MaterialFitOptions& options);
 
 /// Returns all numbers to fit, in this order: the logarithm of the factor on E; with `density` that
 /// on the density; if requested that on GJ / EI, and natural curvature; then directions and
 /// positions of grippers, shared or of each shape; each shape's differences from shared directions;
 /// rolls of each shape; and the tilt of the camera.
-/// @param scenes  result of with_said_frames()
+/// @param scenes  result of with_nominal_frames()
 /// @throws InputError if natural curvature is requested but given by a rest shape, or no clamp or
 /// plane defines its axes, GJ but no scene twists the rod, shared clamps of scenes whose grippers
 /// differ, rolls but no shape depends on one, or a tilt that why_no_camera_tilt() rejects

@@ -15,7 +15,7 @@ namespace dlo::compare {
 namespace {
 
 /// Error of the energy model, divided by the length.
-constexpr double own_error = 1e-8;
+constexpr double model_error_share = 1e-8;
 /// Longest step in log E for which the fit is nearly linear.
 constexpr double longest_log_step = 1;
 /// Largest last step of fits from which others start, in standard deviations.
@@ -26,7 +26,7 @@ std::vector<Scene> fitted_scenes(const std::vector<Scene>& scenes, const Measure
                                  const MaterialFitOptions& options) {
   std::vector<bool> flat;
   for (std::size_t i = 0; i < scenes.size(); ++i) flat.push_back(measured.is_flat(i));
-  return with_said_frames(scenes, flat, options);
+  return with_nominal_frames(scenes, flat, options);
 }
 
 /// Largest number of fits with updated weights, and relative change of the weight at which they
@@ -43,8 +43,8 @@ constexpr int most_ends = 12;
 /// @param frames  number of columns of the design before those of the numbers
 /// @param noise        standard deviation of a coordinate, if known [m]
 /// @param least_noise  residuals below it are errors of the solver [m]
-WireErrors errors_about(const GaussNewton& fit, Eigen::Index frames,
-                        const std::optional<double>& noise, double least_noise) {
+WireErrors estimate_errors(const GaussNewton& fit, Eigen::Index frames,
+                           const std::optional<double>& noise, double least_noise) {
   WireErrors errors{.variance = fit.variance(),
                     .freedom = fit.freedom(),
                     .squares = fit.deviance(),
@@ -54,9 +54,10 @@ WireErrors errors_about(const GaussNewton& fit, Eigen::Index frames,
   errors.tested = estimate.tested;
   if (!estimate.significant) return errors;
   errors.correlation = estimate.covariance;
-  const VarianceEstimate seen = variance_under(fit.series(), errors.correlation, frames);
-  errors.freedom = std::max(1.0, seen.freedom);
-  errors.variance = noise ? *noise * *noise : seen.variance;
+  const VarianceEstimate variance_estimate =
+      variance_under(fit.series(), errors.correlation, frames);
+  errors.freedom = std::max(1.0, variance_estimate.freedom);
+  errors.variance = noise ? *noise * *noise : variance_estimate.variance;
   const CorrelationEffect effect = correlation_effect(fit.series(), frames, errors.correlation);
   const double expected = errors.variance * effect.residual_factor * errors.freedom;
   errors.freedom_of_squares = effect.degrees_of_freedom;
@@ -67,7 +68,7 @@ WireErrors errors_about(const GaussNewton& fit, Eigen::Index frames,
 /// Returns the variance by which squares are divided so that they have the information about the
 /// first number that these errors leave [m^2]: correlated errors carry less information than as
 /// many independent ones.
-double weight_of(const WireErrors& errors, const GaussNewton& fit) {
+double effective_variance(const WireErrors& errors, const GaussNewton& fit) {
   if (!errors.are_correlated()) return errors.variance;
   const Eigen::VectorXd nothing = Eigen::VectorXd::Zero(fit.before().size());
   const double independent = posterior(fit.linear(), 1, nothing)(0, 0);
@@ -78,25 +79,25 @@ double weight_of(const WireErrors& errors, const GaussNewton& fit) {
 
 }  // namespace
 
-WireProblem::WireProblem(const std::vector<Scene>& said, const std::vector<MeasuredShape>& of,
+WireProblem::WireProblem(const std::vector<Scene>& nominal, const std::vector<MeasuredShape>& of,
                          MeasuredShapes& against, const MaterialFitOptions& asked,
                          bool with_density)
-    : scenes(said), shapes(of), measured(against), options(asked), density(with_density) {
+    : scenes(nominal), shapes(of), measured(against), options(asked), density(with_density) {
   std::vector<Scene> fitted = fitted_scenes(scenes, measured, options);
   numbers = wire_numbers(fitted, shapes, options, density);
   scene_at = [fitted = std::move(fitted), changes = numbers](std::size_t shape,
                                                              const Eigen::VectorXd& values) {
     Scene result = fitted[shape];
     for (std::size_t k = 0; k < changes.size(); ++k) {
-      const std::optional<std::size_t>& whose = changes[k].described.shape;
-      if (whose && *whose != shape) continue;
+      const std::optional<std::size_t>& own_shape = changes[k].described.shape;
+      if (own_shape && *own_shape != shape) continue;
       changes[k].change(result, values[static_cast<Eigen::Index>(k)]);
     }
     return result;
   };
 }
 
-Eigen::Index WireProblem::first_of_others() const {
+Eigen::Index WireProblem::first_remaining_number() const {
   return 1 + (density ? 1 : 0) + (options.torsional_stiffness ? 1 : 0);
 }
 
@@ -104,10 +105,11 @@ FittedRods WireProblem::rods(int terms) const {
   std::vector<Unknown> unknowns;
   unknowns.reserve(numbers.size());
   for (const WireNumber& number : numbers) {
-    unknowns.push_back({.stride = number.term < std::max(1, terms) ? number.stride : 0,
-                        .shape = number.described.shape,
-                        .known_before = number.described.known_before,
-                        .longest_step = number.longest_step});
+    unknowns.push_back(
+        {.difference_step = number.term < std::max(1, terms) ? number.difference_step : 0,
+         .shape = number.described.shape,
+         .prior_deviation = number.described.prior_deviation,
+         .longest_step = number.longest_step});
   }
   unknowns.front().longest_step = longest_log_step;
   return {measured, scene_at, std::move(unknowns)};
@@ -128,13 +130,13 @@ GaussNewtonOptions WireProblem::steps() const {
           .highest = std::log(options.largest_ratio)};
 }
 
-GaussNewtonOptions WireProblem::coarse_steps() const {
+GaussNewtonOptions WireProblem::coarse_iteration_options() const {
   GaussNewtonOptions result = steps();
   result.last_step = coarse_step;
   return result;
 }
 
-double WireProblem::least_noise() const { return own_error * scenes.front().length; }
+double WireProblem::least_noise() const { return model_error_share * scenes.front().length; }
 
 void WireProblem::descend(GaussNewton& fit) const {
   if (fit.descend()) return;
@@ -159,13 +161,13 @@ WireOptimum::WireOptimum(const WireProblem& problem, FittedRods& rods, const Eig
     : problem_(problem), rods_(rods), fit_(std::in_place, rods, start, problem.steps()) {
   descend();
   for (int i = 0; i < most_weights && !fit_->before().isZero(); ++i) {
-    const double weight = weight_of(errors_, *fit_);
+    const double weight = effective_variance(errors_, *fit_);
     if (std::abs(weight / fit_->weight() - 1) < weight_tolerance) break;
-    fit_->weigh(weight);
+    fit_->set_data_variance(weight);
     descend();
   }
-  unseen_ = unseen(fit_->linear(), fit_->weight(), fit_->before());
-  if (!is_unseen(0)) go_to_likely_modulus();
+  undetermined_ = undetermined_numbers(fit_->linear(), fit_->weight(), fit_->before());
+  if (!is_undetermined(0)) move_to_most_likely_modulus();
   here_ = fit_->rods();
   covariance_ = covariance_of_numbers(errors_, *fit_, problem.measured.frame_columns(),
                                       problem.options.noise);
@@ -173,24 +175,25 @@ WireOptimum::WireOptimum(const WireProblem& problem, FittedRods& rods, const Eig
 
 void WireOptimum::descend() {
   problem_.descend(*fit_);
-  errors_ = errors_about(*fit_, problem_.measured.frame_columns(), problem_.options.noise,
-                         problem_.least_noise());
+  errors_ = estimate_errors(*fit_, problem_.measured.frame_columns(), problem_.options.noise,
+                            problem_.least_noise());
 }
 
 /// Moves from the least deviance to the most likely E, marginalised over the other numbers. The two
 /// differ if the shapes determine the clamps better for a stiffer rod.
-void WireOptimum::go_to_likely_modulus() {
+void WireOptimum::move_to_most_likely_modulus() {
   marginal_slope_ = fit_->marginal_slope();
   const double variance = fit_->covariance_of_numbers()(0, 0);
   const double longest = rods_.unknowns().front().longest_step;
   const double step = std::clamp(-marginal_slope_ * variance / 2, -longest, longest);
-  GaussNewtonOptions held = problem_.steps();
-  if (std::abs(step) <= held.last_step * std::sqrt(variance)) return;
-  held.lowest = held.highest = std::clamp(values()[0] + step, held.lowest, held.highest);
-  rods_.go_on_from(fit_->rods());
-  GaussNewton there(rods_, fit_->values_beside(held.lowest), held);
-  there.weigh(fit_->weight());
-  fit_.emplace(std::move(there));
+  GaussNewtonOptions fixed_options = problem_.steps();
+  if (std::abs(step) <= fixed_options.last_step * std::sqrt(variance)) return;
+  fixed_options.lowest = fixed_options.highest =
+      std::clamp(values()[0] + step, fixed_options.lowest, fixed_options.highest);
+  rods_.set_initial_rods(fit_->rods());
+  GaussNewton shifted_fit(rods_, fit_->conditional_optimum(fixed_options.lowest), fixed_options);
+  shifted_fit.set_data_variance(fit_->weight());
+  fit_.emplace(std::move(shifted_fit));
   descend();
 }
 
@@ -204,24 +207,24 @@ double WireOptimum::correlated_widening() const {
   return std::sqrt(covariance_(0, 0) / independent) * quantile() / alone;
 }
 
-/// Returns the root of unlikelihood() at the ends of the interval, which is larger than the limit
-/// of the deviance for independent errors.
+/// Returns the root of excess_deviance() at the ends of the interval, which is larger than the
+/// limit of the deviance for independent errors.
 double WireOptimum::limit() const {
   return quantile() * std::sqrt(covariance_(0, 0) / fit_->covariance_of_numbers()(0, 0));
 }
 
-double WireOptimum::unlikelihood(double log_modulus) {
-  rods_.go_on_from(here_);
+double WireOptimum::excess_deviance(double log_modulus) {
+  rods_.set_initial_rods(here_);
   return fit_->profile(log_modulus) - fit_->deviance() +
          marginal_slope_ * (log_modulus - values()[0]);
 }
 
 double WireOptimum::excess_over_limit(double log_modulus) {
-  return unlikelihood(log_modulus) / (limit() * limit());
+  return excess_deviance(log_modulus) / (limit() * limit());
 }
 
 std::optional<double> WireOptimum::end(double side) {
-  if (is_unseen(0)) return std::nullopt;
+  if (is_undetermined(0)) return std::nullopt;
   const double wanted = limit();
   const double linear = quantile() * std::sqrt(covariance_(0, 0));
   const GaussNewtonOptions range = problem_.steps();
@@ -232,7 +235,7 @@ std::optional<double> WireOptimum::end(double side) {
   double reached_before = 0;  // root of the deviance at the previous step
   for (int i = 0; i < most_ends; ++i) {
     if (!(distance < farthest)) return std::nullopt;
-    const double excess = unlikelihood(values()[0] + side * distance);
+    const double excess = excess_deviance(values()[0] + side * distance);
     const double reached = std::sqrt(std::max(0.0, excess));
     if (!(reached < jump * wanted)) return linear;
     if (std::abs(reached - wanted) <= end_tolerance * wanted) break;
@@ -248,7 +251,7 @@ std::optional<double> WireOptimum::end(double side) {
 }
 
 std::vector<Alignment> WireOptimum::alignments() {
-  rods_.go_on_from(here_);
+  rods_.set_initial_rods(here_);
   return rods_.alignments(values());
 }
 

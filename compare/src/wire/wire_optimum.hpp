@@ -18,7 +18,7 @@ namespace dlo::compare {
 /// A wire's numbers, and the shapes to which they are fitted. All references must outlive it.
 struct WireProblem {
   /// @param with_density  whether the density is the second number, after E
-  WireProblem(const std::vector<Scene>& said, const std::vector<MeasuredShape>& of,
+  WireProblem(const std::vector<Scene>& nominal, const std::vector<MeasuredShape>& of,
               MeasuredShapes& against, const MaterialFitOptions& asked, bool with_density);
 
   const std::vector<Scene>& scenes;  ///< scenes as given, one per shape
@@ -31,9 +31,9 @@ struct WireProblem {
 
   /// Returns the index of the first number after E, density and GJ: of natural curvature, if
   /// fitted.
-  [[nodiscard]] Eigen::Index first_of_others() const;
+  [[nodiscard]] Eigen::Index first_remaining_number() const;
   /// Whether a number belongs to one shape alone. @param shape  index of the shape
-  [[nodiscard]] bool is_own(std::size_t number, std::size_t shape) const {
+  [[nodiscard]] bool belongs_to_shape(std::size_t number, std::size_t shape) const {
     return numbers[number].described.shape == shape;
   }
 
@@ -47,7 +47,7 @@ struct WireProblem {
   /// Returns the options of the iteration.
   [[nodiscard]] GaussNewtonOptions steps() const;
   /// Returns the options of a fit from which another one starts.
-  [[nodiscard]] GaussNewtonOptions coarse_steps() const;
+  [[nodiscard]] GaussNewtonOptions coarse_iteration_options() const;
   /// Returns the error of the energy model, the lower bound of any noise [m].
   [[nodiscard]] double least_noise() const;
 
@@ -91,9 +91,9 @@ class WireOptimum {
   /// Returns the covariance of the numbers under these errors.
   [[nodiscard]] const Eigen::MatrixXd& covariance() const { return covariance_; }
   [[nodiscard]] const FittedRods::Rods& rods() const { return here_; }
-  /// Whether a number is not identified, see unseen().
-  [[nodiscard]] bool is_unseen(Eigen::Index number) const {
-    return unseen_[static_cast<std::size_t>(number)];
+  /// Whether a number is not identified, see undetermined_numbers().
+  [[nodiscard]] bool is_undetermined(Eigen::Index number) const {
+    return undetermined_[static_cast<std::size_t>(number)];
   }
   /// Returns half the width of an interval, in standard deviations.
   [[nodiscard]] double quantile() const;
@@ -116,16 +116,16 @@ class WireOptimum {
 
  private:
   void descend();
-  void go_to_likely_modulus();
+  void move_to_most_likely_modulus();
   [[nodiscard]] double limit() const;
-  [[nodiscard]] double unlikelihood(double log_modulus);
+  [[nodiscard]] double excess_deviance(double log_modulus);
 
   const WireProblem& problem_;
   FittedRods& rods_;
   std::optional<GaussNewton> fit_;
   WireErrors errors_;
   double marginal_slope_ = 0;  // see GaussNewton::marginal_slope()
-  std::vector<bool> unseen_;
+  std::vector<bool> undetermined_;
   FittedRods::Rods here_;
   Eigen::MatrixXd covariance_;
 };

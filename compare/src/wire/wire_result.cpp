@@ -15,7 +15,7 @@
 namespace dlo::compare {
 namespace {
 
-void warn(MaterialFit& fit, const std::string& what) {
+void add_warning(MaterialFit& fit, const std::string& what) {
   if (!fit.warning.empty()) fit.warning += "; ";
   fit.warning += what;
 }
@@ -35,14 +35,14 @@ class WireIntervals {
     fit.not_identified = why_not_identified(fit.youngs_modulus);
     if (problem_.density) {
       const double variance = optimum_.covariance()(1, 1);
-      fit.density = identified({1}, scene_.heaviness().value, variance);
+      fit.density = identified({1}, scene_.mass_parameter().value, variance);
     }
     if (problem_.options.torsional_stiffness) find_torsion(fit);
   }
 
   /// Samples the profile of E.
   void draw_profile(MaterialFit& fit) {
-    if (optimum_.is_unseen(0)) return;
+    if (optimum_.is_undetermined(0)) return;
     const double best = optimum_.values()[0];
     const double unit = scene_.stiffness().value;
     const auto logarithm = [unit](const std::optional<double>& value) {
@@ -68,9 +68,10 @@ class WireIntervals {
     const double freedom = optimum_.errors().freedom_of_squares;
     if (!(gsl_distribution(gsl_cdf_chisq_Q, squares, freedom) < significant)) return 1;
     const double times = std::sqrt(squares / freedom);
-    warn(fit, fmt::format("the residuals are {:.3g} times what the given noise explains; the "
-                          "interval is as much wider",
-                          times));
+    add_warning(fit,
+                fmt::format("the residuals are {:.3g} times what the given noise explains; the "
+                            "interval is as much wider",
+                            times));
     return times;
   }
 
@@ -82,7 +83,7 @@ class WireIntervals {
       if (!described.shape) continue;
       const auto number = static_cast<Eigen::Index>(k);
       nuisances[*described.shape].push_back(
-          {frames + number, optimum_.values()[number], described.known_before});
+          {frames + number, optimum_.values()[number], described.prior_deviation});
     }
     const WireErrors& errors = optimum_.errors();
     return scatter_between(
@@ -105,7 +106,7 @@ class WireIntervals {
     LogProfile::Interval interval;
     if (below && *below < farthest) interval.low = log_value - *below;
     if (above && *above < farthest) interval.high = log_value + *above;
-    return fitted_value(log_value, interval, unit, options.identified_within);
+    return fitted_value(log_value, interval, unit, options.largest_interval_ratio);
   }
 
   /// Returns the value whose logarithm is the sum of some numbers, with that sum's variance.
@@ -116,18 +117,18 @@ class WireIntervals {
     for (const Eigen::Index number : numbers) {
       log_value += optimum_.values()[number];
       // A number that only its prior determines has no interval.
-      const bool in_no_shape = optimum_.fit().linear().design.col(number).isZero(0);
-      if (in_no_shape || optimum_.is_unseen(number)) half.reset();
+      const bool is_unobserved = optimum_.fit().linear().design.col(number).isZero(0);
+      if (is_unobserved || optimum_.is_undetermined(number)) half.reset();
     }
     return identified(log_value, unit, half, half);
   }
 
   [[nodiscard]] std::string why_not_identified(const FittedValue& E) const {
     const NamedValue stiffness = scene_.stiffness();
-    if (std::none_of(problem_.scenes.begin(), problem_.scenes.end(), is_forced)) {
+    if (std::none_of(problem_.scenes.begin(), problem_.scenes.end(), has_external_force)) {
       return why_stiffness_not_identifiable(scene_);
     }
-    if (optimum_.is_unseen(0)) {
+    if (optimum_.is_undetermined(0)) {
       return fmt::format(
           "{0} is not identifiable from these shapes: with the other parameters as fitted, the "
           "shapes are the same for any {0}",
@@ -141,12 +142,12 @@ class WireIntervals {
         "{0} is not identifiable together with the other fitted parameters: {1} to {2} {3} fit "
         "(identified: within a factor of {4:g})",
         stiffness.name, end(E.low), end(E.high), stiffness.unit,
-        problem_.options.identified_within);
+        problem_.options.largest_interval_ratio);
   }
 
   /// Sets GJ and GJ / EI; the fitted number is the logarithm of the factor on GJ / EI.
   void find_torsion(MaterialFit& fit) const {
-    const Eigen::Index k = problem_.first_of_others() - 1;
+    const Eigen::Index k = problem_.first_remaining_number() - 1;
     const Eigen::MatrixXd& covariance = optimum_.covariance();
     const double GJ = scene_.twisting_stiffness();
     fit.torsional_stiffness =
@@ -162,20 +163,20 @@ class WireIntervals {
 };
 
 /// Returns the values of the numbers; rounding of those that no shape depends on is set to zero.
-Eigen::VectorXd found_values(const WireProblem& problem, const WireOptimum& optimum) {
+Eigen::VectorXd optimal_values(const WireProblem& problem, const WireOptimum& optimum) {
   constexpr double rounding = 1e-9;  // divided by the prior deviation
   Eigen::VectorXd values = optimum.values();
   for (Eigen::Index k = 0; k < values.size(); ++k) {
-    const double before = problem.numbers[static_cast<std::size_t>(k)].described.known_before;
+    const double before = problem.numbers[static_cast<std::size_t>(k)].described.prior_deviation;
     if (std::isfinite(before) && std::abs(values[k]) < rounding * before) values[k] = 0;
   }
   return values;
 }
 
 /// Sets natural curvature, and how the shapes were held.
-void tell_others(const WireProblem& problem, const WireOptimum& optimum,
-                 const Eigen::VectorXd& values, MaterialFit& fit) {
-  for (Eigen::Index k = problem.first_of_others(); k < values.size(); ++k) {
+void set_supports(const WireProblem& problem, const WireOptimum& optimum,
+                  const Eigen::VectorXd& values, MaterialFit& fit) {
+  for (Eigen::Index k = problem.first_remaining_number(); k < values.size(); ++k) {
     FittedNumber found = problem.numbers[static_cast<std::size_t>(k)].described;
     found.value = values[k];
     found.deviation = std::sqrt(optimum.covariance()(k, k));
@@ -198,11 +199,11 @@ std::vector<ClampCorrection> clamp_corrections(const WireProblem& problem, Eigen
   std::vector<ClampCorrection> result;
   result.reserve(found.size());
   for (std::size_t i = 0; i < found.size(); ++i) {
-    const Gripper& said = problem.scenes.front().grippers[i];
-    ClampCorrection correction{.gripper = i, .displacement = found[i].position - said.position};
-    if (said.direction) {
+    const Gripper& nominal = problem.scenes.front().grippers[i];
+    ClampCorrection correction{.gripper = i, .displacement = found[i].position - nominal.position};
+    if (nominal.direction) {
       const Eigen::AngleAxisd turn(
-          Eigen::Quaterniond::FromTwoVectors(*said.direction, *found[i].direction));
+          Eigen::Quaterniond::FromTwoVectors(*nominal.direction, *found[i].direction));
       correction.rotation = turn.angle() * turn.axis();
     }
     result.push_back(correction);
@@ -222,7 +223,7 @@ Eigen::Vector3d camera_tilt(const WireProblem& problem, const Eigen::VectorXd& v
   return whole.angle() * whole.axis();
 }
 
-void tell_errors(const WireProblem& problem, const WireOptimum& optimum, MaterialFit& fit) {
+void set_fit_errors(const WireProblem& problem, const WireOptimum& optimum, MaterialFit& fit) {
   const WireErrors& errors = optimum.errors();
   fit.noise_m = std::sqrt(errors.variance);
   fit.noise_is_estimated = !problem.options.noise;
@@ -235,7 +236,7 @@ void tell_errors(const WireProblem& problem, const WireOptimum& optimum, Materia
                                      .degrees_of_freedom = errors.freedom};
 }
 
-void tell_shapes(const WireProblem& problem, WireOptimum& optimum, MaterialFit& fit) {
+void set_fitted_shapes(const WireProblem& problem, WireOptimum& optimum, MaterialFit& fit) {
   const std::vector<Alignment> alignments = optimum.alignments();
   double squares = 0;
   for (std::size_t i = 0; i < alignments.size(); ++i) {
@@ -246,36 +247,38 @@ void tell_shapes(const WireProblem& problem, WireOptimum& optimum, MaterialFit& 
 }
 
 /// Adds a warning if a rod was fitted in its plane but would leave it.
-void note_ways_out_of_plane(const WireProblem& problem, const WireOptimum& optimum,
-                            MaterialFit& fit) {
+void warn_of_out_of_plane_rods(const WireProblem& problem, const WireOptimum& optimum,
+                               MaterialFit& fit) {
   double farthest = 0;
-  std::size_t whose = 0;
+  std::size_t farthest_shape = 0;
   for (std::size_t i = 0; i < optimum.rods().size(); ++i) {
-    const double way = problem.measured.way_out_of_plane(i, problem.scene_at(i, optimum.values()),
-                                                         *optimum.rods()[i]);
-    if (way > farthest) whose = i;
-    farthest = std::max(farthest, way);
+    const double distance = problem.measured.out_of_plane_displacement(
+        i, problem.scene_at(i, optimum.values()), *optimum.rods()[i]);
+    if (distance > farthest) farthest_shape = i;
+    farthest = std::max(farthest, distance);
   }
   if (!(farthest > 0)) return;
-  warn(fit, fmt::format("the rod was fitted in the plane of its points, but would leave this plane "
-                        "by {:.3g} mm in {}: its GJ is larger or its natural curvature differs",
-                        farthest * 1000, problem.scenes[whose].file));
+  add_warning(
+      fit, fmt::format("the rod was fitted in the plane of its points, but would leave this plane "
+                       "by {:.3g} mm in {}: its GJ is larger or its natural curvature differs",
+                       farthest * 1000, problem.scenes[farthest_shape].file));
 }
 
 /// Adds a warning if clamps or a camera deviate more than their tolerances allow.
 void note_contradicted_tolerances(MaterialFit& fit) {
   constexpr double likely = 2.5;  // standard deviations
   const auto excess = [](const FittedNumber& number) {
-    const bool is_said = number.unit == "rad" || number.unit == "m";
-    return is_said ? std::abs(number.value) / number.known_before : 0;
+    const bool has_tolerance = number.unit == "rad" || number.unit == "m";
+    return has_tolerance ? std::abs(number.value) / number.prior_deviation : 0;
   };
   const auto farthest = std::max_element(
       fit.others.begin(), fit.others.end(),
       [&](const FittedNumber& a, const FittedNumber& b) { return excess(a) < excess(b); });
   if (farthest == fit.others.end() || !(excess(*farthest) > likely)) return;
-  warn(fit, fmt::format("the shapes contradict a given standard deviation: {} deviates by {:.2g} "
-                        "times this value; give a larger one",
-                        farthest->name, excess(*farthest)));
+  add_warning(fit,
+              fmt::format("the shapes contradict a given standard deviation: {} deviates by {:.2g} "
+                          "times this value; give a larger one",
+                          farthest->name, excess(*farthest)));
 }
 
 }  // namespace
@@ -290,17 +293,17 @@ MaterialFit wire_result(const WireProblem& problem, WireOptimum& optimum) {
   MaterialFit fit;
   WireIntervals intervals(problem, optimum);
   intervals.find(fit);
-  const Eigen::VectorXd values = found_values(problem, optimum);
-  tell_others(problem, optimum, values, fit);
+  const Eigen::VectorXd values = optimal_values(problem, optimum);
+  set_supports(problem, optimum, values, fit);
   if (problem.options.shared_clamps) fit.clamps = clamp_corrections(problem, values);
   fit.camera_tilt = camera_tilt(problem, values);
-  tell_errors(problem, optimum, fit);
-  tell_shapes(problem, optimum, fit);
+  set_fit_errors(problem, optimum, fit);
+  set_fitted_shapes(problem, optimum, fit);
   if (problem.options.profile_points > 0) {
     draw_rods(optimum.rods(), problem.scenes, fit);
     intervals.draw_profile(fit);
   }
-  note_ways_out_of_plane(problem, optimum, fit);
+  warn_of_out_of_plane_rods(problem, optimum, fit);
   note_contradicted_tolerances(fit);
   return fit;
 }

@@ -55,7 +55,7 @@ SpanSearchResult search_one(const Problem& problem, const RodSpan& span,
 /// material directors is one span.
 Found solve_spans(const Problem& problem, const ExactOptions& options, const Deadline& deadline) {
   SolvedRod rod;
-  rod.spans = has_material_directors(problem) ? std::vector<RodSpan>{uncut(problem)}
+  rod.spans = has_material_directors(problem) ? std::vector<RodSpan>{whole_directed_span(problem)}
                                               : cut_at_clamps(problem);
   Found result;
   std::vector<std::vector<SpanEquilibrium>> found;
@@ -89,7 +89,7 @@ Found solve_spans(const Problem& problem, const ExactOptions& options, const Dea
 
 /// Refuses clamps that transmit a torque, because the spans of a round, intrinsically straight rod
 /// are twisted independently.
-void refuse_passed_torque(const Problem& problem) {
+void require_no_transmitted_torque(const Problem& problem) {
   const std::vector<OrderedGrip> grips = ordered_grips(problem);
   const auto holds = [](const OrderedGrip& g) { return g.grip->frame.has_value(); };
   const auto first = std::find_if(grips.begin(), grips.end(), holds);
@@ -107,12 +107,12 @@ void require_followable(const Problem& problem) {
           static_cast<double>(problem.obstacles.size()),
           "0 if a load has no potential (drag, a follower load, a couple in space)");
   for (const Load& load : problem.loads) {
-    require(!load.follows || !clamp_under(problem, load), "solve_exact",
+    require(!load.follows || !clamp_at_load(problem, load), "solve_exact",
             "arc length of a follower load", load.at, "different from those of the clamps");
   }
-  const int held = clamps_with_frames(problem);
-  require(held <= 2 || has_material_directors(problem), "solve_exact",
-          "number of clamps with frames", held, "<= 2 if a load has no potential");
+  const int clamp_count = clamps_with_frames(problem);
+  require(clamp_count <= 2 || has_material_directors(problem), "solve_exact",
+          "number of clamps with frames", clamp_count, "<= 2 if a load has no potential");
 }
 
 /// Returns the problem without drag, couples and loads that follow the rod. Material directors keep
@@ -135,7 +135,7 @@ Problem without_nonpotential_loads(Problem problem, const RodSpan& span) {
 
 /// Returns the problem with its loads replaced by dead ones that are equal to them on a given
 /// shape.
-Problem frozen_on(const Problem& problem, const RodSpan& span, const Equilibrium& shape) {
+Problem with_frozen_loads(const Problem& problem, const RodSpan& span, const Equilibrium& shape) {
   constexpr Eigen::Index pieces = 64;
   Problem dead = problem;
   if (problem.drag) {
@@ -172,9 +172,9 @@ Problem frozen_on(const Problem& problem, const RodSpan& span, const Equilibrium
 Equilibrium solve_without_potential(const Problem& problem, const ExactOptions& options,
                                     const Deadline& deadline) {
   require_followable(problem);
-  const RodSpan span = with_own_axes(problem);
+  const RodSpan span = whole_span_with_axes(problem);
   if (options.start != nullptr) {
-    SpanEquilibrium found = refine_span(span, frozen_on(problem, span, *options.start),
+    SpanEquilibrium found = refine_span(span, with_frozen_loads(problem, span, *options.start),
                                         *options.start, options.tolerance, deadline);
     return assemble(problem, {{span}, {std::move(found)}}, options.tolerance);
   }
@@ -189,9 +189,10 @@ Equilibrium solve_without_potential(const Problem& problem, const ExactOptions& 
     failed.evaluations = dead.evaluations;
     return failed;
   }
-  SpanEquilibrium found = refine_span(loaded_by(span, 0), base, dead, options.tolerance, deadline);
+  SpanEquilibrium found =
+      refine_span(scale_nonpotential_loads(span, 0), base, dead, options.tolerance, deadline);
   if (found.converged) {
-    found.shots += dead.evaluations;
+    found.integrations += dead.evaluations;
     found = follow_loads(span, found, options.tolerance, deadline);
   }
   return assemble(problem, {{span}, {std::move(found)}}, options.tolerance);
@@ -232,14 +233,14 @@ std::vector<Equilibrium> solve(const Problem& problem, const ExactOptions& optio
           problem.axial_stiffness.value_or(0),
           "omitted for a rod with drag, follower loads, or couples out of its plane");
   if (judged && !problem.axial_stiffness) {
-    if (std::optional<Equilibrium> line = line_without_search(problem)) return {*std::move(line)};
+    if (std::optional<Equilibrium> line = shape_without_search(problem)) return {*std::move(line)};
   }
   Found found;
   if (!judged) {
     found.equilibria = {solve_without_potential(problem, options, deadline)};
     found.out_of_time = deadline.passed();
   } else if (problem.obstacles.empty()) {
-    if (!has_material_directors(problem)) refuse_passed_torque(problem);
+    if (!has_material_directors(problem)) require_no_transmitted_torque(problem);
     found = solve_spans(problem, options, deadline);
   } else {
     found.equilibria = {confirm_start(problem, options, deadline)};

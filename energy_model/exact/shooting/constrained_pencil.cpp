@@ -11,7 +11,7 @@ using Factors = Eigen::SimplicialLDLT<Sparse, Eigen::Lower, Eigen::NaturalOrderi
 
 /// Factorises the bordered matrix of ConstrainedPencil. @return false if a pivot is zero
 bool factorise(const ConstrainedPencil& pencil, double mu, Factors& factors) {
-  factors.compute(pencil.second - mu * pencil.norm + pencil.fixed);
+  factors.compute(pencil.second - mu * pencil.norm + pencil.constraint_blocks);
   return factors.info() == Eigen::Success && factors.vectorD().allFinite();
 }
 
@@ -22,7 +22,7 @@ int count_below(const ConstrainedPencil& pencil, double mu) {
   for (int attempt = 0; attempt < 5; ++attempt) {
     if (factorise(pencil, mu, factors)) {
       const auto negative = (factors.vectorD().array() < 0).count();
-      return static_cast<int>(negative) - pencil.borders;
+      return static_cast<int>(negative) - pencil.constraint_count;
     }
     mu -= 1e-3 * neutral_eigenvalue * (1 + attempt);
   }

@@ -23,10 +23,10 @@ using Sparse = Eigen::SparseMatrix<double>;
 /// free (if D tends to 0), and of K + C^T D^-1 C, by Sylvester's law of inertia. The unknowns are
 /// ordered as in a band matrix.
 struct ConstrainedPencil {
-  Sparse second;  ///< K
-  Sparse norm;    ///< S
-  Sparse fixed;   ///< blocks of C, C^T and -D
-  int borders;    ///< number of rows of C
+  Sparse second;             ///< K
+  Sparse norm;               ///< S
+  Sparse constraint_blocks;  ///< blocks of C, C^T and -D
+  int constraint_count;      ///< number of rows of C
 };
 
 /// Smallest eigenvalue of a pencil, and numbers of negative and of zero eigenvalues.

@@ -17,7 +17,7 @@ namespace dlo::energy_model {
 namespace {
 
 // Shots of a step after which the next one is longer; Newton's method needs two per iteration.
-constexpr int few_shots = 12;
+constexpr int few_integrations = 12;
 constexpr double step_growth = 1.6;  // ratio of a longer step to the one before it
 // Maximum number of Newton iterations; more are slower than a shorter step.
 constexpr int step_iterations = 12;
@@ -54,7 +54,7 @@ class Continuation {
                  .deadline = deadline},
         tolerance_(tolerance),
         now_(begin),
-        shots_(begin.shots) {}
+        integrations_(begin.integrations) {}
 
   /// Returns the equilibrium at the end of the family, or a failed one with the cause.
   SpanEquilibrium run() {
@@ -80,9 +80,9 @@ class Continuation {
     SpanEquilibrium last = shoot(span, family_.end, now_.nodes);
     if (last.converged && family_.stable && !last.stable()) {
       last = leave_saddle(span, last, options_);
-      shots_ += last.shots;
+      integrations_ += last.integrations;
     }
-    last.shots = shots_;
+    last.integrations = integrations_;
     return last;
   }
 
@@ -91,7 +91,7 @@ class Continuation {
  private:
   [[nodiscard]] SpanEquilibrium failure(const std::string& cause) const {
     SpanEquilibrium failed;
-    failed.shots = shots_;
+    failed.integrations = integrations_;
     failed.message = cause;
     return failed;
   }
@@ -99,13 +99,13 @@ class Continuation {
   SpanEquilibrium shoot(const RodSpan& span, double at, const std::vector<RodState>& start) {
     SpanEquilibrium found =
         shoot_span(span, mesh_at(span, now_.s), start, family_.frames(at), options_);
-    shots_ += found.shots;
+    integrations_ += found.integrations;
     cause_ = found.message;
     return found;
   }
 
-  [[nodiscard]] std::vector<RodState> at_nodes(const SpanEquilibrium& equilibrium,
-                                               const RodSpan& span) const {
+  [[nodiscard]] std::vector<RodState> states_at_nodes(const SpanEquilibrium& equilibrium,
+                                                      const RodSpan& span) const {
     std::vector<RodState> states =
         states_at(equilibrium, span, {now_.s.begin(), now_.s.end()}, options_.tolerance);
     states.back().m.setZero();
@@ -118,7 +118,7 @@ class Continuation {
     std::vector<RodState> nodes = now_.nodes;
     if (before_.nodes.empty()) return nodes;
     const double part = (next - reached_) / (reached_ - reached_before_);
-    const std::vector<RodState> before = at_nodes(before_, family_.span(reached_before_));
+    const std::vector<RodState> before = states_at_nodes(before_, family_.span(reached_before_));
     for (std::size_t i = 0; i < nodes.size(); ++i) {
       RodState& node = nodes[i];
       node.r += part * (node.r - before[i].r);
@@ -142,10 +142,10 @@ class Continuation {
     const std::vector<RodState> start = predicted(next);
     SpanEquilibrium found = shoot(span, next, start);
     if (!found.converged) return 0;
-    const std::vector<RodState> states = at_nodes(found, span);
+    const std::vector<RodState> states = states_at_nodes(found, span);
     if (largest_change(states, now_.nodes) > most_turn) return 0;
     if (!before_.nodes.empty() && largest_change(states, start) > most_correction) return 0;
-    const double factor = found.shots <= few_shots ? step_growth : 1;
+    const double factor = found.integrations <= few_integrations ? step_growth : 1;
     if (!family_.stable || found.stable()) {
       accept(next, std::move(found));
       return factor;
@@ -162,7 +162,7 @@ class Continuation {
   }
 
   bool accept_after_flow(double next, SpanEquilibrium found) {
-    shots_ += found.shots;
+    integrations_ += found.integrations;
     cause_ = found.message;
     if (!found.converged) return false;
     accept(next, std::move(found));
@@ -183,7 +183,7 @@ class Continuation {
   SpanEquilibrium now_;
   SpanEquilibrium before_;  // last but one shape; without nodes: no secant
   std::string cause_;       // why the last step failed
-  int shots_ = 0;
+  int integrations_ = 0;
 };
 
 /// Frames at the clamps of a span before their rotation, and the roll of each [rad].
@@ -213,7 +213,7 @@ Rolls rolls_of(const RodSpan& span, const SpanEquilibrium& without, double toler
     const auto& [d1, turns] = *clamp.frame;
     // The angle is measured from the frame that the rod without rolls would have there.
     const Eigen::Matrix3d ahead_of = rolled(rolls.released.back(), -span.first_roll);
-    const double ahead = std::atan2(ahead_of.col(1).dot(d1), ahead_of.col(0).dot(d1));
+    const double frame_angle = std::atan2(ahead_of.col(1).dot(d1), ahead_of.col(0).dot(d1));
     const double first = span.clamps.front().at;
     std::optional<Writhe> before;
     if (turns.turns) before = writhe(sample, first, clamp.at);
@@ -222,7 +222,7 @@ Rolls rolls_of(const RodSpan& span, const SpanEquilibrium& without, double toler
     for (auto i = node_at(without.s, first); i < node_at(without.s, clamp.at); ++i) {
       twist += without.turns[static_cast<std::size_t>(i)];
     }
-    rolls.targets.back() = turned_angle(turns, ahead, twist, before);
+    rolls.targets.back() = end_rotation(turns, frame_angle, twist, before);
     rolls.largest = std::max(rolls.largest, std::abs(rolls.targets.back()));
   }
   return rolls;
@@ -235,12 +235,12 @@ SpanEquilibrium twist_span(const RodSpan& span, const SpanEquilibrium& without, 
   if (!without.converged) return without;
   const Rolls rolls = rolls_of(span, without, tolerance);
   const auto frames = [&](double roll) {
-    ClampFrames held = released_frames(span);
-    for (std::size_t k = 0; k < held.size(); ++k) {
+    ClampFrames rolled_frames = released_frames(span);
+    for (std::size_t k = 0; k < rolled_frames.size(); ++k) {
       const double own = rolls.largest > 0 ? roll / rolls.largest * rolls.targets[k] : 0;
-      if (span.clamps[k].frame) held[k] = rolled(rolls.released[k], own);
+      if (span.clamps[k].frame) rolled_frames[k] = rolled(rolls.released[k], own);
     }
-    return held;
+    return rolled_frames;
   };
   const Family family{.span = [&](double) { return span; },
                       .frames = frames,
@@ -257,7 +257,7 @@ SpanEquilibrium twist_span(const RodSpan& span, const SpanEquilibrium& without, 
     begin = leave_saddle(
         span, begin,
         {.tolerance = tolerance, .max_iterations = step_iterations, .deadline = deadline});
-    begin.shots += without.shots;
+    begin.integrations += without.integrations;
   }
   Continuation continuation(family, begin, tolerance, deadline);
   SpanEquilibrium result = begin.converged ? continuation.run() : std::move(begin);
@@ -272,7 +272,7 @@ SpanEquilibrium follow_loads(const RodSpan& span, const SpanEquilibrium& unloade
                              const Deadline& deadline) {
   constexpr double rounding = 1e-9;
   const bool flat = span.round() && out_of_plane(span, unloaded.nodes) < rounding;
-  const Family family{.span = [&](double share) { return loaded_by(span, share); },
+  const Family family{.span = [&](double share) { return scale_nonpotential_loads(span, share); },
                       .frames = [&](double) { return unloaded.frames; },
                       .first = 0.125,
                       .shortest = 1e-4,
@@ -288,7 +288,7 @@ SpanEquilibrium follow_loads(const RodSpan& span, const SpanEquilibrium& unloade
   return result;
 }
 
-RodSpan stretching_by(RodSpan span, double share) {
+RodSpan with_stretch_share(RodSpan span, double share) {
   for (RodSpan::Part& part : span.parts) part.section.stretch *= share;
   return span;
 }
@@ -296,7 +296,7 @@ RodSpan stretching_by(RodSpan span, double share) {
 SpanEquilibrium stretch_span(const RodSpan& span, const SpanEquilibrium& rigid, double tolerance,
                              const Deadline& deadline) {
   if (!rigid.converged) return rigid;
-  const Family family{.span = [&](double share) { return stretching_by(span, share); },
+  const Family family{.span = [&](double share) { return with_stretch_share(span, share); },
                       .frames = [&](double) { return rigid.frames; },
                       .first = 1,
                       .shortest = 1.0 / 256};

@@ -22,21 +22,22 @@ namespace dlo::energy_model {
 [[nodiscard]] SpanEquilibrium twist_span(const RodSpan& span, const SpanEquilibrium& without,
                                          double tolerance, const Deadline& deadline);
 
-/// Follows an equilibrium while loads without a potential grow from zero (loaded_by()), by natural
-/// continuation in their share. It does not pass a fold: the result is then not converged, and the
-/// message states the share of the loads that was reached.
-/// @param unloaded  converged equilibrium of loaded_by(span, 0)
+/// Follows an equilibrium while loads without a potential grow from zero
+/// (scale_nonpotential_loads()), by natural continuation in their share. It does not pass a fold:
+/// the result is then not converged, and the message states the share of the loads that was
+/// reached.
+/// @param unloaded  converged equilibrium of scale_nonpotential_loads(span, 0)
 [[nodiscard]] SpanEquilibrium follow_loads(const RodSpan& span, const SpanEquilibrium& unloaded,
                                            double tolerance, const Deadline& deadline);
 
 /// Continues an equilibrium of the inextensible span to the span that stretches, by natural
 /// continuation in the stretch. It does not leave unstable equilibria.
-/// @param rigid  equilibrium of stretching_by(span, 0)
+/// @param rigid  equilibrium of with_stretch_share(span, 0)
 [[nodiscard]] SpanEquilibrium stretch_span(const RodSpan& span, const SpanEquilibrium& rigid,
                                            double tolerance, const Deadline& deadline);
 
 /// Returns the span with a share of its stretch.
-[[nodiscard]] RodSpan stretching_by(RodSpan span, double share);
+[[nodiscard]] RodSpan with_stretch_share(RodSpan span, double share);
 
 /// Follows the gradient flow t_ = -grad E of a clamped span to a stable equilibrium, by backward
 /// Euler. A step of duration D from the tangents p is the adjacent equilibrium of

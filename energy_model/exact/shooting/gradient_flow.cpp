@@ -17,9 +17,10 @@ constexpr double first_duration = 0.01;
 constexpr double shortest = 1e-8;       // duration of the shortest step
 constexpr double longest = 1e8;         // duration of the longest step
 constexpr double most_flow_turn = 0.4;  // largest rotation of a tangent in one step [rad]
-constexpr double small_turn = 0.1;  // rotation in a step below which the next step is longer [rad]
+constexpr double small_flow_rotation =
+    0.1;  // rotation in a step below which the next step is longer [rad]
 // Rotation in a step of at least settled_duration at which the flow ends [rad].
-constexpr double settled_turn = 3e-3;
+constexpr double final_flow_rotation = 3e-3;
 constexpr double settled_duration = 0.1;  // several times the relaxation time of most modes
 constexpr double flow_departure = 0.1;    // largest change of a tangent when a saddle is left [rad]
 constexpr int most_flow_departures = 6;
@@ -27,8 +28,8 @@ constexpr int most_flow_departures = 6;
 constexpr int steps_after_failure = 3;
 
 /// Returns the largest change of a tangent; for a rod that is not round also of d1.
-double widest_turn(const RodSpan& span, const std::vector<Eigen::Matrix3d>& a,
-                   const std::vector<Eigen::Matrix3d>& b) {
+double largest_rotation(const RodSpan& span, const std::vector<Eigen::Matrix3d>& a,
+                        const std::vector<Eigen::Matrix3d>& b) {
   double widest = 0;
   for (std::size_t i = 0; i < a.size(); ++i) {
     const Eigen::Matrix3d change = a[i] - b[i];
@@ -38,7 +39,8 @@ double widest_turn(const RodSpan& span, const std::vector<Eigen::Matrix3d>& a,
   return widest;
 }
 
-std::vector<Eigen::Matrix3d> frames_beside(const SpanEquilibrium& saddle, double departure) {
+std::vector<Eigen::Matrix3d> frames_displaced_from(const SpanEquilibrium& saddle,
+                                                   double departure) {
   const Eigen::Matrix3Xd spins = departure * saddle.stability.spin_at(saddle.s);
   std::vector<Eigen::Matrix3d> frames = frames_of(saddle.nodes);
   for (std::size_t i = 0; i < frames.size(); ++i) {
@@ -48,13 +50,13 @@ std::vector<Eigen::Matrix3d> frames_beside(const SpanEquilibrium& saddle, double
 }
 
 /// Returns a mesh whose nodes are pulled to the directions of `aim`, for a step of this duration.
-RodMesh pulled(const RodSpan& span, RodMesh mesh, const std::vector<Eigen::Matrix3d>& aim,
-               double duration) {
+RodMesh with_proximal_pull(const RodSpan& span, RodMesh mesh,
+                           const std::vector<Eigen::Matrix3d>& aim, double duration) {
   for (Eigen::Index i = 1; i < mesh.intervals(); ++i) {
     const double pull = (mesh.s[i + 1] - mesh.s[i - 1]) / (2 * duration);
     const Eigen::Matrix3d& R = aim[static_cast<std::size_t>(i)];
-    mesh.pull.col(i) = pull * R.col(2);
-    if (!span.round()) mesh.pull_d1.col(i) = pull * R.col(0);
+    mesh.tangent_force.col(i) = pull * R.col(2);
+    if (!span.round()) mesh.d1_force.col(i) = pull * R.col(0);
   }
   return mesh;
 }
@@ -77,10 +79,10 @@ SpanEquilibrium follow_gradient(const RodSpan& span, const RodMesh& mesh,
       break;
     }
     SpanEquilibrium result =
-        close_span(span, pulled(span, mesh, aim, duration), start, frames, step);
-    failed.shots += result.shots;
+        close_span(span, with_proximal_pull(span, mesh, aim, duration), start, frames, step);
+    failed.integrations += result.integrations;
     std::vector<Eigen::Matrix3d> reached = frames_of(result.nodes);
-    const double turn = widest_turn(span, reached, aim);
+    const double turn = largest_rotation(span, reached, aim);
     if (!result.converged || turn > most_flow_turn) {
       duration /= 4;
       wait = steps_after_failure;
@@ -89,22 +91,22 @@ SpanEquilibrium follow_gradient(const RodSpan& span, const RodMesh& mesh,
     --wait;
     start = std::move(result.nodes);
     aim = std::move(reached);
-    if (turn < settled_turn && duration > settled_duration) {
+    if (turn < final_flow_rotation && duration > settled_duration) {
       SpanEquilibrium equilibrium = shoot_span(span, mesh, start, frames, options);
-      equilibrium.shots += failed.shots;
-      failed.shots = equilibrium.shots;
+      equilibrium.integrations += failed.integrations;
+      failed.integrations = equilibrium.integrations;
       const bool near = equilibrium.converged && equilibrium.s.size() == mesh.s.size() &&
-                        widest_turn(span, frames_of(equilibrium.nodes), aim) < most_flow_turn;
+                        largest_rotation(span, frames_of(equilibrium.nodes), aim) < most_flow_turn;
       if (near && equilibrium.stable()) return equilibrium;
       if (near && equilibrium.stability.s.size() > 0 && ++departures <= most_flow_departures) {
         start = equilibrium.nodes;
-        aim = frames_beside(equilibrium, flow_departure);
+        aim = frames_displaced_from(equilibrium, flow_departure);
         duration = first_duration;
         continue;
       }
     }
-    if (turn < small_turn && wait < 0)
-      duration = std::min(longest, duration * (turn < settled_turn ? 10 : 3));
+    if (turn < small_flow_rotation && wait < 0)
+      duration = std::min(longest, duration * (turn < final_flow_rotation ? 10 : 3));
   }
   return failed;
 }
@@ -116,9 +118,9 @@ SpanEquilibrium leave_saddle(const RodSpan& span, const SpanEquilibrium& saddle,
   if (saddle.stability.s.size() == 0) return failed;
   const RodMesh mesh = mesh_at(span, saddle.s);
   for (const double side : {1.0, -1.0}) {
-    SpanEquilibrium left =
-        follow_gradient(span, mesh, saddle.nodes, frames_beside(saddle, side * flow_departure),
-                        saddle.frames, options);
+    SpanEquilibrium left = follow_gradient(span, mesh, saddle.nodes,
+                                           frames_displaced_from(saddle, side * flow_departure),
+                                           saddle.frames, options);
     if (left.converged || options.deadline.passed()) return left;
     failed = std::move(left);
   }

@@ -14,7 +14,7 @@ namespace {
 
 constexpr double largest_force = 1e6;  // largest force over b that the first mesh resolves
 // Largest component across the plane of tangents of a planar shape.
-constexpr double plane_of_start = 1e-6;
+constexpr double start_plane_tolerance = 1e-6;
 // Difference of equal arc lengths [l].
 constexpr double same_arc_length = 1e-9;
 // Distance before and behind a point over which the rotation of d1 is measured [l].
@@ -125,7 +125,7 @@ SpanEquilibrium refine_span(const RodSpan& span, const Problem& problem, const E
     return shoot_span(span, mesh, std::move(start), held_frames(span), options);
   }
   const RodSpan released = without_frames(span);
-  if (out_of_plane(span, start) < plane_of_start) options.motion = Motion::in_plane;
+  if (out_of_plane(span, start) < start_plane_tolerance) options.motion = Motion::in_plane;
   SpanEquilibrium equilibrium = shoot_span(released, mesh_at(released, mesh.s), std::move(start),
                                            released_frames(released), options);
   return span.twisted() ? twist_span(span, equilibrium, tolerance, deadline) : equilibrium;

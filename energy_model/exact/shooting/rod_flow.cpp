@@ -15,8 +15,8 @@ namespace {
 constexpr Eigen::Index first_integral = 18;
 constexpr Eigen::Index state_size = 23;
 
-struct FlowPiece {
-  const RodPiece* rod;
+struct IntegrationData {
+  const RodElement* rod;
   const RodVariation* variation;
 
   /// Whether a force per length depends on the state.
@@ -28,14 +28,15 @@ struct FlowPiece {
 };
 
 /// Force per length of the surface or of drag, and its derivatives by r, the spin, m and n.
-struct SpreadForce {
+struct DistributedForce {
   Eigen::Vector3d value = Eigen::Vector3d::Zero();
   Eigen::Matrix<double, 3, 12> by_state;
 };
 
 /// @param with_derivatives  false: `by_state` is not computed, and neither without such a force
-SpreadForce spread_force(const RodPiece& piece, const RodState& state, bool with_derivatives) {
-  SpreadForce spread;
+DistributedForce distributed_force(const RodElement& piece, const RodState& state,
+                                   bool with_derivatives) {
+  DistributedForce spread;
   if (piece.surface == nullptr) {
     if (!piece.section.drag) return spread;
     const Eigen::Vector3d t = state.t();
@@ -60,8 +61,8 @@ SpreadForce spread_force(const RodPiece& piece, const RodState& state, bool with
 int rod_rates(double at, const double* y, double* rate, void* data) {
   using Vector = Eigen::Map<const Eigen::Vector3d>;
   using Rate = Eigen::Map<Eigen::Vector3d>;
-  const auto& flow = *static_cast<const FlowPiece*>(data);
-  const RodPiece& piece = *flow.rod;
+  const auto& flow = *static_cast<const IntegrationData*>(data);
+  const RodElement& piece = *flow.rod;
   const RodSection& section = piece.section;
   const RodState state{Vector(y), Eigen::Map<const Eigen::Matrix3d>(y + 3), Vector(y + 12),
                        Vector(y + 15)};
@@ -70,8 +71,8 @@ int rod_rates(double at, const double* y, double* rate, void* data) {
   const Eigen::Vector3d t = state.t();
   const Eigen::Vector3d weight = section.weight + s * section.slope;
   const Eigen::Vector3d compliance = section.compliance();
-  const Eigen::Vector3d own = R.transpose() * m;
-  const Eigen::Vector3d elastic = compliance.cwiseProduct(own);
+  const Eigen::Vector3d local_moment = R.transpose() * m;
+  const Eigen::Vector3d elastic = compliance.cwiseProduct(local_moment);
   Eigen::Vector3d u = elastic;
   if (piece.natural) u += section.natural(piece.natural, s);
   const Eigen::Vector3d omega = R * u;
@@ -81,15 +82,15 @@ int rod_rates(double at, const double* y, double* rate, void* data) {
   for (Eigen::Index k = 0; k < 3; ++k) Rate(rate + 3 + 3 * k) = omega.cross(R.col(k));
   Rate(rate + 12) = along * n.cross(t);
   Rate(rate + 15) = -weight;
-  rate[first_integral] = (own[0] * elastic[0] + own[1] * elastic[1]) / 2;
-  rate[first_integral + 1] = own[2] * elastic[2] / 2;
+  rate[first_integral] = (local_moment[0] * elastic[0] + local_moment[1] * elastic[1]) / 2;
+  rate[first_integral + 1] = local_moment[2] * elastic[2] / 2;
   rate[first_integral + 2] = -weight.dot(r);
   rate[first_integral + 3] = u[2];
   rate[first_integral + 4] = section.stretch * tension * tension / 2;
   const Eigen::Index parameters = flow.variation == nullptr ? 0 : flow.variation->cols();
-  SpreadForce spread;
+  DistributedForce spread;
   if (flow.has_spread_force()) {
-    spread = spread_force(piece, state, parameters > 0);
+    spread = distributed_force(piece, state, parameters > 0);
     Rate(rate + 15) -= spread.value;
   }
   if (parameters == 0) return GSL_SUCCESS;
@@ -119,8 +120,8 @@ int rod_rates(double at, const double* y, double* rate, void* data) {
 
 Eigen::Vector3d strain_of(const RodSection& section, const NaturalStrain& natural, double s,
                           const RodState& state) {
-  const Eigen::Vector3d own = (state.R.transpose() * state.m).cwiseProduct(section.compliance());
-  return natural ? Eigen::Vector3d(section.natural(natural, s) + own) : own;
+  const Eigen::Vector3d strain = (state.R.transpose() * state.m).cwiseProduct(section.compliance());
+  return natural ? Eigen::Vector3d(section.natural(natural, s) + strain) : strain;
 }
 
 Eigen::Vector3d curvature_of(const RodSection& section, const NaturalStrain& natural, double s,
@@ -144,24 +145,24 @@ Eigen::Matrix3Xd tangents_of(const std::vector<RodState>& states) {
   return tangents;
 }
 
-RodPiece piece_of(const RodSpan& span, const RodMesh& mesh, Eigen::Index interval) {
+RodElement rod_element(const RodSpan& span, const RodMesh& mesh, Eigen::Index interval) {
   return {mesh.section_of(interval), span.natural, mesh.s[interval], mesh.width(interval),
           mesh.contacts.surface_of(interval)};
 }
 
-Eigen::Matrix<double, 12, 1> rate_of(const RodPiece& piece, const RodState& state) {
+Eigen::Matrix<double, 12, 1> rate_of(const RodElement& piece, const RodState& state) {
   const Eigen::Vector3d dr = (1 + piece.section.stretch * state.n.dot(state.t())) * state.t();
   Eigen::Matrix<double, 12, 1> rate;
   rate << dr, state.R * strain_of(piece.section, piece.natural, piece.begin, state),
       state.n.cross(dr),
       -(piece.section.weight + piece.begin * piece.section.slope) -
-          spread_force(piece, state, false).value;
+          distributed_force(piece, state, false).value;
   return rate;
 }
 
-bool follow_rod(const RodPiece& piece, double tolerance, RodState& state, RodVariation* variation,
-                RodIntegrals* integrals) {
-  FlowPiece flow{&piece, variation};
+bool integrate_rod(const RodElement& piece, double tolerance, RodState& state,
+                   RodVariation* variation, RodIntegrals* integrals) {
+  IntegrationData flow{&piece, variation};
   const Eigen::Index rows = flow.rows();
   const Eigen::Index parameters = variation == nullptr ? 0 : variation->cols();
   std::vector<double> y(static_cast<std::size_t>(state_size + rows * parameters), 0.0);

@@ -37,7 +37,7 @@ struct RodIntegrals {
 };
 
 /// Data of a piece of the rod that the rod's equations need.
-struct RodPiece {
+struct RodElement {
   const RodSection& section;
   const NaturalStrain& natural;
   double begin = 0;   ///< s
@@ -47,10 +47,11 @@ struct RodPiece {
 };
 
 /// Returns an interval of a mesh as a piece. Span and mesh have to outlive it.
-[[nodiscard]] RodPiece piece_of(const RodSpan& span, const RodMesh& mesh, Eigen::Index interval);
+[[nodiscard]] RodElement rod_element(const RodSpan& span, const RodMesh& mesh,
+                                     Eigen::Index interval);
 
 /// Returns the derivatives of a cross-section by the arc length at the begin of a piece.
-[[nodiscard]] Eigen::Matrix<double, 12, 1> rate_of(const RodPiece& piece, const RodState& state);
+[[nodiscard]] Eigen::Matrix<double, 12, 1> rate_of(const RodElement& piece, const RodState& state);
 
 /// Integrates the rod's equations over a piece,
 ///     r' = t,   R' = R hat(u),   m' = n x t,   n' = -w - f(t), and -w - p N where it lies,
@@ -65,7 +66,8 @@ struct RodPiece {
 /// @param[in,out] state, variation  from the begin of the piece to its end; no variation if null
 /// @param[out] integrals  integrals over the piece; not returned if null
 /// @return false if the integrator failed
-[[nodiscard]] bool follow_rod(const RodPiece& piece, double tolerance, RodState& state,
-                              RodVariation* variation = nullptr, RodIntegrals* integrals = nullptr);
+[[nodiscard]] bool integrate_rod(const RodElement& piece, double tolerance, RodState& state,
+                                 RodVariation* variation = nullptr,
+                                 RodIntegrals* integrals = nullptr);
 
 }  // namespace dlo::energy_model

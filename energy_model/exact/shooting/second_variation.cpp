@@ -35,12 +35,13 @@ class VariationProblem {
         elements_(elements_of(span, mesh, force)) {
     const Eigen::Index count = elements_.size() - 1;
     std::vector<RodState> at_ends;
-    if (touches()) at_ends = states({elements_.begin(), elements_.end()});
+    if (has_contacts()) at_ends = states({elements_.begin(), elements_.end()});
     number_unknowns(frames, at_ends);
     if (free_twist_ && !in_plane_) omit_twist(states);
     const std::vector<RodState> inside = states(gauss_points(elements_));
     for (Eigen::Index e = 0; e < count; ++e) add_element(e, inside);
-    for (std::size_t k = 0; k + 1 < places_.size(); ++k) join(places_[k], places_[k + 1]);
+    for (std::size_t k = 0; k + 1 < places_.size(); ++k)
+      add_position_constraint(places_[k], places_[k + 1]);
     for (const RodContact& contact : mesh.contacts.nodes) add_contact(contact, at_ends);
   }
 
@@ -51,7 +52,7 @@ class VariationProblem {
                              static_cast<int>(3 * (places_.size() - 1))};
     result.second.setFromTriplets(second_.begin(), second_.end());
     result.norm.setFromTriplets(norm_.begin(), norm_.end());
-    result.fixed.setFromTriplets(fixed_.begin(), fixed_.end());
+    result.constraint_blocks.setFromTriplets(fixed_.begin(), fixed_.end());
     return result;
   }
 
@@ -80,7 +81,7 @@ class VariationProblem {
   };
 
   /// Point at which dr is zero, at a grip, or tangential to an obstacle.
-  struct Place {
+  struct ConstrainedPosition {
     Eigen::Index end;         // index of an element's end
     Eigen::Matrix3Xd basis;   // free directions of dr, one per column
     Eigen::Matrix3d hessian;  // Hessian of the gap to the obstacle
@@ -89,7 +90,7 @@ class VariationProblem {
     Eigen::Index multiplier;
   };
 
-  [[nodiscard]] bool touches() const {
+  [[nodiscard]] bool has_contacts() const {
     return !mesh_.contacts.nodes.empty() || !mesh_.contacts.surface.empty();
   }
 
@@ -103,7 +104,7 @@ class VariationProblem {
 
   /// Returns the surface on which an element lies; null: none.
   [[nodiscard]] const Surface* surface_of(Eigen::Index element) const {
-    if (!touches()) return nullptr;
+    if (!has_contacts()) return nullptr;
     const double middle = (elements_[element] + elements_[element + 1]) / 2;
     const auto after = std::upper_bound(mesh_.s.begin(), mesh_.s.end(), middle) - mesh_.s.begin();
     return mesh_.contacts.surface_of(after - 1);
@@ -125,9 +126,9 @@ class VariationProblem {
     const auto add_node = [&](double s) {
       Eigen::Matrix3Xd basis = Eigen::Matrix3d::Identity();
       if (const RodSpan::Clamp* clamp = span_.clamp_at(s)) {
-        const bool held =
+        const bool is_fixed =
             free_twist_ || frames[static_cast<std::size_t>(clamp - span_.clamps.data())];
-        basis = held ? Eigen::Matrix3Xd(3, 0) : Eigen::Matrix3Xd(clamp->direction);
+        basis = is_fixed ? Eigen::Matrix3Xd(3, 0) : Eigen::Matrix3Xd(clamp->direction);
       }
       if (free_twist_ && basis.cols() > 0) basis.resize(3, 2);
       if (in_plane_ && basis.cols() > 0) basis = span_.plane->x.cross(span_.plane->y);
@@ -141,7 +142,7 @@ class VariationProblem {
       if (next_hold < span_.holds.size() && span_.holds[next_hold].at <= elements_[e]) {
         add_place(e, Eigen::Matrix3Xd(3, 0), Eigen::Matrix3d::Zero());
         ++next_hold;
-      } else if (touches()) {
+      } else if (has_contacts()) {
         const auto gap = gap_at(e, at_ends[static_cast<std::size_t>(e)]);
         if (gap) {
           const Eigen::Vector3d& normal = gap->gradient;
@@ -176,10 +177,12 @@ class VariationProblem {
   /// Sums of an element by the spins of its nodes: second derivatives, norm, and the integral of
   /// dr' between its ends.
   struct ElementSums {
-    static constexpr Eigen::Index own = 3 * (element_order + 1);
-    Eigen::Matrix<double, own, own> second = Eigen::Matrix<double, own, own>::Zero();
-    Eigen::Matrix<double, own, own> norm = Eigen::Matrix<double, own, own>::Zero();
-    Eigen::Matrix<double, 3, own> integral = Eigen::Matrix<double, 3, own>::Zero();
+    static constexpr Eigen::Index unknowns = 3 * (element_order + 1);
+    Eigen::Matrix<double, unknowns, unknowns> second =
+        Eigen::Matrix<double, unknowns, unknowns>::Zero();
+    Eigen::Matrix<double, unknowns, unknowns> norm =
+        Eigen::Matrix<double, unknowns, unknowns>::Zero();
+    Eigen::Matrix<double, 3, unknowns> integral = Eigen::Matrix<double, 3, unknowns>::Zero();
   };
 
   void add_element(Eigen::Index e, const std::vector<RodState>& inside) {
@@ -224,7 +227,7 @@ class VariationProblem {
       }
     }
     finite_ = finite_ && second.allFinite();
-    press(e, inside);
+    add_surface_curvature(e, inside);
     const Eigen::Index multiplier = multiplier_of(e);
     if (section.stretch > 0 && multiplier >= 0) add(fixed_, multiplier, multiplier, -yields);
     distribute(e, sums);
@@ -247,15 +250,15 @@ class VariationProblem {
             node.basis.transpose() * norm.block<3, 3>(at, to) * other.basis);
       }
       if (multiplier < 0) continue;
-      const Eigen::MatrixXd seen = integral.middleCols<3>(at) * node.basis;
-      add(fixed_, multiplier, node.first, seen);
-      add(fixed_, node.first, multiplier, seen.transpose());
+      const Eigen::MatrixXd block = integral.middleCols<3>(at) * node.basis;
+      add(fixed_, multiplier, node.first, block);
+      add(fixed_, node.first, multiplier, block.transpose());
     }
   }
 
   /// Adds the curvature of the surface on which an element lies, with half of the pressure at
   /// either end.
-  void press(Eigen::Index e, const std::vector<RodState>& inside) {
+  void add_surface_curvature(Eigen::Index e, const std::vector<RodState>& inside) {
     const Surface* surface = surface_of(e);
     if (surface == nullptr) return;
     const double h = elements_[e + 1] - elements_[e];
@@ -266,12 +269,12 @@ class VariationProblem {
       force += h / 2 * element_weight[q] * pressure(*surface, section, state);
     }
     for (const Eigen::Index end : {e, e + 1}) {
-      if (const Place* place = place_at(end)) bend(*place, force / 2);
+      if (const ConstrainedPosition* place = place_at(end)) add_gap_curvature(*place, force / 2);
     }
   }
 
   /// Adds minus f dr.(H dr) to the second variation.
-  void bend(const Place& place, double force) {
+  void add_gap_curvature(const ConstrainedPosition& place, double force) {
     add(second_, place.first, place.first,
         -force * place.basis.transpose() * place.hessian * place.basis);
   }
@@ -279,11 +282,11 @@ class VariationProblem {
   void add_contact(const RodContact& contact, const std::vector<RodState>& at_ends) {
     const auto end = std::lower_bound(elements_.begin(), elements_.end(), mesh_.s[contact.node]) -
                      elements_.begin();
-    const Place& place = *place_at(end);
+    const ConstrainedPosition& place = *place_at(end);
     const RodState& state = at_ends[static_cast<std::size_t>(end)];
     const obstacle::Gap gap = contact.gap(state.r);
-    bend(place, contact.force);
-    if (!contact.touched || !contact.moves) return;
+    add_gap_curvature(place, contact.force);
+    if (!contact.touched || !contact.is_position_unknown) return;
     const Eigen::Vector3d t = state.t();
     const Eigen::Vector3d along = gap.hessian * t;
     const Eigen::Vector3d bent = curvature_of(section_at(span_, mesh_.s[contact.node]),
@@ -300,7 +303,8 @@ class VariationProblem {
   }
 
   /// Adds the parts of the constraint between two neighbouring places that contain their dr.
-  void join(const Place& before, const Place& after) {
+  void add_position_constraint(const ConstrainedPosition& before,
+                               const ConstrainedPosition& after) {
     for (Eigen::Index i = 0; i < 3; ++i) {
       fixed_.emplace_back(after.multiplier + i, after.multiplier + i, -constraint_compliance);
     }
@@ -320,17 +324,17 @@ class VariationProblem {
   }
 
   /// Returns the place at an element's end; null: none.
-  [[nodiscard]] const Place* place_at(Eigen::Index end) const {
-    const auto found =
-        std::ranges::find_if(places_, [&](const Place& place) { return place.end == end; });
+  [[nodiscard]] const ConstrainedPosition* place_at(Eigen::Index end) const {
+    const auto found = std::ranges::find_if(
+        places_, [&](const ConstrainedPosition& place) { return place.end == end; });
     return found == places_.end() ? nullptr : &*found;
   }
 
   /// Returns the index of the multiplier of the constraint between the two places around an
   /// element; -1 outside the places.
   [[nodiscard]] Eigen::Index multiplier_of(Eigen::Index e) const {
-    const auto next =
-        std::ranges::find_if(places_, [&](const Place& place) { return place.end > e; });
+    const auto next = std::ranges::find_if(
+        places_, [&](const ConstrainedPosition& place) { return place.end > e; });
     return next == places_.begin() || next == places_.end() ? -1 : next->multiplier;
   }
 
@@ -343,7 +347,7 @@ class VariationProblem {
   bool in_plane_;
   Eigen::VectorXd elements_;  // arc lengths of the elements' ends
   std::vector<SpinNode> nodes_;
-  std::vector<Place> places_;
+  std::vector<ConstrainedPosition> places_;
   Eigen::Index size_ = 0;
   bool finite_ = true;
   VariationTriplets second_, norm_, fixed_;

@@ -48,9 +48,9 @@ std::pair<Eigen::Vector3d, Eigen::Matrix3d> jump_of_moment(const RodState& node,
 }
 
 /// Returns a load that follows a cross-section in the axes of space, and its derivative by a spin.
-std::pair<Eigen::Vector3d, Eigen::Matrix3d> following(const RodState& node,
-                                                      const Eigen::Vector3d& own) {
-  const Eigen::Vector3d load = node.R * own;
+std::pair<Eigen::Vector3d, Eigen::Matrix3d> rotated_load(const RodState& node,
+                                                         const Eigen::Vector3d& local_load) {
+  const Eigen::Vector3d load = node.R * local_load;
   return {load, -cross_matrix(load)};
 }
 
@@ -82,11 +82,12 @@ struct ShootingSystem::Rows {
   /// @param blocks  derivatives of the difference
   void add(const Combinations& combinations, const Difference& difference,
            const std::vector<Block>& blocks) {
-    std::vector<Block> own;
+    std::vector<Block> local_load;
     if (derivatives != nullptr) {
-      for (const auto& [column, values] : blocks) own.push_back({column, combinations * values});
+      for (const auto& [column, values] : blocks)
+        local_load.push_back({column, combinations * values});
     }
-    add(combinations * difference, own);
+    add(combinations * difference, local_load);
   }
 };
 
@@ -110,7 +111,7 @@ bool ShootingSystem::evaluate(const ShootingPoint& point, Eigen::VectorXd& equat
   // the continuity of n and m there.
   Difference last = Difference::Zero();
   last.tail<6>() << point.nodes.back().m, point.nodes.back().n;
-  const std::vector<Block> by_last = {{mesh_.intervals() * per_node(), basis_}};
+  const std::vector<Block> by_last = {{mesh_.intervals() * unknowns_per_node(), basis_}};
   rows.add(combine(9, positions_.transpose() / (rate_ * rate_)), last, by_last);
   rows.add(combine(6, turns_.transpose() / rate_), last, by_last);
   equations = std::move(rows.values);
@@ -120,7 +121,7 @@ bool ShootingSystem::evaluate(const ShootingPoint& point, Eigen::VectorXd& equat
 Eigen::MatrixX3d ShootingSystem::frame_equations(const RodState& node, Eigen::Index i,
                                                  Rows& rows) const {
   const auto index = static_cast<std::size_t>(i);
-  const Eigen::Index column = i * per_node();
+  const Eigen::Index column = i * unknowns_per_node();
   const bool planar = turns_.cols() == 1;
   const auto add = [&](const Eigen::VectorXd& value, const Eigen::MatrixX3d& by_spin) {
     rows.add(value, {{column, by_spin * basis_.middleRows<3>(3)}});
@@ -148,13 +149,13 @@ Eigen::MatrixX3d ShootingSystem::frame_equations(const RodState& node, Eigen::In
 }
 
 void ShootingSystem::contact_equations(const RodState& node, Eigen::Index i, Rows& rows) const {
-  const Eigen::Index column = i * per_node();
+  const Eigen::Index column = i * unknowns_per_node();
   const RodContact* contact = contact_at(i);
   if (contact != nullptr && contact->touched) {
     const obstacle::Gap gap = contact->gap(node.r);
     rows.add(Eigen::VectorXd::Constant(1, gap.value),
              {{column, gap.gradient.transpose() * basis_.topRows<3>()}});
-    if (contact->moves) {
+    if (contact->is_position_unknown) {
       rows.add(Eigen::VectorXd::Constant(1, gap.gradient.dot(node.t())),
                {{column, (gap.hessian * node.t()).transpose() * basis_.topRows<3>() +
                              node.t().cross(gap.gradient).transpose() * basis_.middleRows<3>(3)}});
@@ -172,12 +173,13 @@ void ShootingSystem::node_equations(const ShootingPoint& point, Eigen::Index i,
                                     const RodState& before, std::vector<Block> by_before,
                                     Rows& rows) const {
   const RodState& node = point.nodes[static_cast<std::size_t>(i)];
-  const Eigen::Index own = i * per_node();
+  const Eigen::Index own_index = i * unknowns_per_node();
   contact_equations(node, i, rows);
-  const auto [follows, follows_by_spin] = following(node, mesh_.own_load.col(i));
-  const auto [couple, couple_by_spin] = following(node, mesh_.own_couple.col(i));
+  const auto [follows, follows_by_spin] = rotated_load(node, mesh_.follower_load.col(i));
+  const auto [couple, couple_by_spin] = rotated_load(node, mesh_.follower_couple.col(i));
   // Jump of the moment by pulls on the tangent and d1: m = ... - t x q.
-  const auto [jump, jump_by_spin] = jump_of_moment(node, mesh_.pull.col(i), mesh_.pull_d1.col(i));
+  const auto [jump, jump_by_spin] =
+      jump_of_moment(node, mesh_.tangent_force.col(i), mesh_.d1_force.col(i));
   Difference difference = Difference::Zero();
   difference.segment<3>(6) = before.m - mesh_.couple.col(i) - couple - jump - node.m;
   difference.tail<3>() = before.n - mesh_.load.col(i) - follows - node.n;
@@ -193,10 +195,10 @@ void ShootingSystem::node_equations(const ShootingPoint& point, Eigen::Index i,
     by_before.push_back({force_[index], Difference::Zero()});
     by_before.back().values.bottomRows(3) = -rate_ * rate_ * gap.gradient;
   }
-  if (rows.derivatives != nullptr) by_before.push_back({own, by_node * basis_});
+  if (rows.derivatives != nullptr) by_before.push_back({local_load, by_node * basis_});
   if (const RodSpan::Hold* hold = mesh_.hold[static_cast<std::size_t>(i)]) {
     rows.add(positions_.transpose() * (node.r - hold->position),
-             {{own, positions_.transpose() * basis_.topRows<3>()}});
+             {{local_load, positions_.transpose() * basis_.topRows<3>()}});
   } else {
     rows.add(combine(9, positions_.transpose() / (rate_ * rate_)), difference, by_before);
   }
@@ -204,8 +206,8 @@ void ShootingSystem::node_equations(const ShootingPoint& point, Eigen::Index i,
   rows.add(combine(6, continuous / rate_), difference, by_before);
 }
 
-std::vector<ShootingSystem::Block> ShootingSystem::with_width(Eigen::Index i,
-                                                              const Difference& by_width) const {
+std::vector<ShootingSystem::Block> ShootingSystem::width_derivatives(
+    Eigen::Index i, const Difference& by_width) const {
   std::vector<Block> blocks;
   if (shares_.empty()) return blocks;
   const Share& share = shares_[static_cast<std::size_t>(i)];
@@ -219,31 +221,31 @@ std::vector<ShootingSystem::Block> ShootingSystem::with_width(Eigen::Index i,
 bool ShootingSystem::interval_equations(const ShootingPoint& point, Eigen::Index i,
                                         Rows& rows) const {
   const RodState& next = point.nodes[static_cast<std::size_t>(i + 1)];
-  RodPiece piece = piece_of(span_, mesh_, i);
+  RodElement piece = rod_element(span_, mesh_, i);
   piece.begin = point.s[i];
   piece.length = point.s[i + 1] - point.s[i];
   // The end of an interval without a surface moves as its begin moves; on a surface the pressure
   // depends on r.
   const Eigen::Index shifts = piece.surface == nullptr ? positions_.cols() : 0;
-  const Eigen::Index own = i * per_node();
+  const Eigen::Index own_index = i * unknowns_per_node();
   RodState end = point.nodes[static_cast<std::size_t>(i)];
   RodVariation change(12, 0);
-  if (rows.derivatives != nullptr) change = basis_.rightCols(per_node() - shifts);
-  if (!follow_rod(piece, tolerance_, end, &change)) return false;
+  if (rows.derivatives != nullptr) change = basis_.rightCols(unknowns_per_node() - shifts);
+  if (!integrate_rod(piece, tolerance_, end, &change)) return false;
   const Eigen::Vector3d rotation = rotation_between(next.R, end.R);
   std::vector<Block> by_end;
   std::vector<Block> blocks;
   if (rows.derivatives != nullptr) {
     const Eigen::Matrix3d rate = rotation_rate(rotation);
-    by_end = with_width(
+    by_end = width_derivatives(
         i, rate_of({piece.section, piece.natural, point.s[i + 1], 0, piece.surface}, end));
-    by_end.push_back({own, basis_.leftCols(shifts)});
-    by_end.push_back({own + shifts, change});
+    by_end.push_back({local_load, basis_.leftCols(shifts)});
+    by_end.push_back({local_load + shifts, change});
     for (Block& block : by_end) {
       block.values.middleRows(3, 3) = rate * block.values.middleRows(3, 3);
     }
     blocks = by_end;
-    blocks.push_back({own + per_node(), -basis_});
+    blocks.push_back({local_load + unknowns_per_node(), -basis_});
     blocks.back().values.middleRows(3, 3) = -rate.transpose() * basis_.middleRows<3>(3);
   }
   Difference difference = Difference::Zero();

@@ -57,7 +57,7 @@ ShootingSystem::ShootingSystem(const RodSpan& span, const RodMesh& mesh, const C
   for (const RodState& state : start) {
     start_.push_back(planar ? in_plane(state) : state);
   }
-  unknowns_ = equations_ = per_node() * mesh.s.size();
+  unknowns_ = equations_ = unknowns_per_node() * mesh.s.size();
   number_contacts();
   share_arc_lengths();
 }
@@ -68,9 +68,9 @@ void ShootingSystem::number_contacts() {
   for (const RodContact& contact : mesh_.contacts.nodes) {
     const auto node = static_cast<std::size_t>(contact.node);
     contacts_[node] = &contact - mesh_.contacts.nodes.data();
-    if (contact.moves) arc_length_[node] = unknowns_++;
+    if (contact.is_position_unknown) arc_length_[node] = unknowns_++;
     force_.push_back(unknowns_++);
-    if (contact.touched) equations_ += contact.moves ? 2 : 1;
+    if (contact.touched) equations_ += contact.is_position_unknown ? 2 : 1;
   }
   for (Eigen::Index i = 0; i < mesh_.intervals(); ++i) {
     const bool lies = mesh_.contacts.surface_of(i) != nullptr;
@@ -83,10 +83,10 @@ void ShootingSystem::share_arc_lengths() {
   for (Eigen::Index before = 0; before < mesh_.intervals();) {
     Eigen::Index after = before + 1;
     while (!mesh_.is_fixed(after) && contact_at(after) == nullptr) ++after;
-    const double way = mesh_.s[after] - mesh_.s[before];
+    const double distance = mesh_.s[after] - mesh_.s[before];
     for (Eigen::Index i = before; i < after; ++i) {
       shares_.push_back(
-          {before, after, (mesh_.s[i] - mesh_.s[before]) / way, mesh_.width(i) / way});
+          {before, after, (mesh_.s[i] - mesh_.s[before]) / distance, mesh_.width(i) / distance});
     }
     before = after;
   }
@@ -120,12 +120,12 @@ ShootingPoint ShootingSystem::moved(const ShootingPoint& point, const Eigen::Vec
   ShootingPoint result = point;
   Eigen::Index at = 0;
   for (RodState& state : result.nodes) {
-    const Difference change = basis_ * step.segment(at, per_node());
+    const Difference change = basis_ * step.segment(at, unknowns_per_node());
     state.r += change.head<3>();
     state.R = from_rotation_vector(change.segment<3>(3)) * state.R;
     state.m += change.segment<3>(6);
     state.n += change.tail<3>();
-    at += per_node();
+    at += unknowns_per_node();
   }
   for (std::size_t k = 0; k < force_.size(); ++k) {
     result.forces[k] += rate_ * rate_ * step[force_[k]];
@@ -142,21 +142,22 @@ ShootingPoint ShootingSystem::moved(const ShootingPoint& point, const Eigen::Vec
   return result;
 }
 
-double ShootingSystem::allowed_part(const ShootingPoint& point, const Eigen::VectorXd& step) const {
+double ShootingSystem::allowed_step_share(const ShootingPoint& point,
+                                          const Eigen::VectorXd& step) const {
   double turn = 0;
   Eigen::Index at = 0;
   for (const RodState& node : point.nodes) {
-    const Eigen::Vector3d spin = basis_.middleRows<3>(3) * step.segment(at, per_node());
+    const Eigen::Vector3d spin = basis_.middleRows<3>(3) * step.segment(at, unknowns_per_node());
     turn = std::max(turn, spin.cross(node.t()).norm());
-    at += per_node();
+    at += unknowns_per_node();
   }
   double part = turn > largest_turn ? largest_turn / turn : 1;
   for (const Share& share : shares_) {
     for (const Eigen::Index node : {share.before, share.after}) {
       const Eigen::Index unknown = arc_length_[static_cast<std::size_t>(node)];
       if (unknown < 0) continue;
-      const double way = longest_share * (point.s[share.after] - point.s[share.before]);
-      if (std::abs(part * step[unknown]) > way) part = way / std::abs(step[unknown]);
+      const double distance = longest_share * (point.s[share.after] - point.s[share.before]);
+      if (std::abs(part * step[unknown]) > distance) part = distance / std::abs(step[unknown]);
     }
   }
   return part;

@@ -16,7 +16,7 @@ namespace dlo::energy_model {
 using Triplets = std::vector<Eigen::Triplet<double>>;
 
 struct ShootingOptions {
-  double tolerance = 1e-13;          ///< local error of the integrator, see follow_rod()
+  double tolerance = 1e-13;          ///< local error of the integrator, see integrate_rod()
   Motion motion = Motion::in_space;  ///< in the plane: nodes stay in the span's plane
   int max_iterations = 60;           ///< largest number of Newton steps
   Deadline deadline{};               ///< a result after the deadline is a failure
@@ -78,7 +78,8 @@ class ShootingSystem {
 
   /// Returns the share of a step, at most 1, that rotates tangents by at most 0.5 rad and moves a
   /// contact by at most 0.3 of the distance between its neighbouring grips, loads or contacts.
-  [[nodiscard]] double allowed_part(const ShootingPoint& point, const Eigen::VectorXd& step) const;
+  [[nodiscard]] double allowed_step_share(const ShootingPoint& point,
+                                          const Eigen::VectorXd& step) const;
 
   /// Returns the largest gap; infinity if evaluate() fails. A tangent that points backwards at a
   /// clamp counts as a gap too.
@@ -96,7 +97,7 @@ class ShootingSystem {
   using Combinations = Eigen::Matrix<double, Eigen::Dynamic, 12>;
   [[nodiscard]] static Combinations combine(Eigen::Index first, const Eigen::MatrixX3d& rows);
 
-  [[nodiscard]] Eigen::Index per_node() const { return basis_.cols(); }
+  [[nodiscard]] Eigen::Index unknowns_per_node() const { return basis_.cols(); }
 
   /// Position of a node and width of its interval, relative to the part between two nodes whose arc
   /// lengths are unknown or fixed.
@@ -135,7 +136,8 @@ class ShootingSystem {
 
   /// Returns the derivatives of the state at the end of interval i by the arc lengths of the nodes
   /// that determine its width.
-  [[nodiscard]] std::vector<Block> with_width(Eigen::Index i, const Difference& by_width) const;
+  [[nodiscard]] std::vector<Block> width_derivatives(Eigen::Index i,
+                                                     const Difference& by_width) const;
 
   /// Adds the conditions of a contact at a node, and of the begin of a part that lies, for the
   /// cross-section there.
@@ -160,11 +162,11 @@ class ShootingSystem {
   std::vector<Share> shares_;             // share of each interval; empty: no arc length is unknown
 };
 
-/// Outcome of close_gaps(), which solves the equations of multiple shooting by Newton's method.
-struct [[nodiscard]] ClosedGaps {
+/// Outcome of solve_shooting(), which solves the equations of multiple shooting by Newton's method.
+struct [[nodiscard]] ShootingResult {
   bool converged = false;
   std::string message = "Newton's method reached its iteration limit";
-  int shots = 0;
+  int integrations = 0;
 };
 
 /// Whether the rod has nearly zero modes, such as a buckle that slides along a twisted rod: steps
@@ -174,7 +176,7 @@ enum class Modes { stiff, nearly_zero };
 /// Solves the equations of multiple shooting by Newton's method. Steps are damped until the next
 /// simplified step is shorter (Deuflhard's natural monotonicity). If there is no such step, because
 /// of a zero mode or nearly one, a Levenberg step reduces the gaps.
-ClosedGaps close_gaps(const ShootingSystem& system, ShootingPoint& point, int max_iterations,
-                      Modes modes);
+ShootingResult solve_shooting(const ShootingSystem& system, ShootingPoint& point,
+                              int max_iterations, Modes modes);
 
 }  // namespace dlo::energy_model

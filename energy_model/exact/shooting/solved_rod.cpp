@@ -141,7 +141,7 @@ Equilibrium assemble(const Problem& problem, SolvedRod solved, double tolerance)
   for (std::size_t i = 0; i < rod->spans.size(); ++i) {
     const RodSpan& span = rod->spans[i];
     const SpanEquilibrium& equilibrium = rod->equilibria[i];
-    result.evaluations += equilibrium.shots;
+    result.evaluations += equilibrium.integrations;
     result.residual = std::max(result.residual, equilibrium.residual);
     if (!equilibrium.converged) {
       result.status = SolveStatus::failed;
@@ -171,10 +171,10 @@ Equilibrium assemble(const Problem& problem, SolvedRod solved, double tolerance)
     result.twists.clear();
     return result;
   }
-  result.energy = restore(problem, energy);
+  result.energy = to_joules(problem, energy);
   add_loads_on_clamps(problem, result);
   judge(stability, result);
-  if (has_couples(problem)) result.message += in_the_plane;
+  if (has_couples(problem)) result.message += planar_check_note;
   if (unjudged || !has_potential(problem)) {
     result.status = SolveStatus::not_verified;
     result.message = "an equilibrium whose balance is verified; its stability is not judged: " +

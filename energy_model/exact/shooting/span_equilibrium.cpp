@@ -21,7 +21,7 @@ void add_energies(const RodSpan& span, double tolerance, SpanEquilibrium& equili
     equilibrium.energy.load -= mesh.load.col(i).dot(state.r);
     if (i == mesh.intervals()) break;
     RodIntegrals integrals;
-    if (!follow_rod(piece_of(span, mesh, i), tolerance, state, nullptr, &integrals)) {
+    if (!integrate_rod(rod_element(span, mesh, i), tolerance, state, nullptr, &integrals)) {
       equilibrium.converged = false;
       equilibrium.message = "the integrator failed while computing the energies";
       equilibrium.energy = {NAN, NAN, NAN, NAN};
@@ -54,7 +54,7 @@ double bending_force(const RodSpan& span, const std::vector<RodState>& states) {
   for (const RodState& state : states) {
     force = std::max({force, state.n.norm() / b, state.m.squaredNorm() / (b * b)});
   }
-  for (const Eigen::Vector3d& bend : natural_probes(span, 16)) {
+  for (const Eigen::Vector3d& bend : sample_natural_strains(span, 16)) {
     force = std::max(force, bend.squaredNorm());
   }
   return force;
@@ -69,10 +69,10 @@ SpanEquilibrium close_span(const RodSpan& span, const RodMesh& mesh,
   equilibrium.contacts = mesh.contacts;
   ShootingPoint point = system.start();
   const Modes modes = span.round() && span.twisted() ? Modes::nearly_zero : Modes::stiff;
-  ClosedGaps closed = close_gaps(system, point, options.max_iterations, modes);
+  ShootingResult closed = solve_shooting(system, point, options.max_iterations, modes);
   equilibrium.converged = closed.converged;
   equilibrium.message = std::move(closed.message);
-  equilibrium.shots = closed.shots;
+  equilibrium.integrations = closed.integrations;
   equilibrium.residual = system.gap(point);
   equilibrium.s = std::move(point.s);
   equilibrium.nodes = std::move(point.nodes);
@@ -89,9 +89,9 @@ SpanEquilibrium shoot_span(const RodSpan& span, RodMesh mesh, std::vector<RodSta
                            const ClampFrames& frames, const ShootingOptions& options) {
   SpanEquilibrium equilibrium;
   for (int level = 0; level < 3; ++level) {
-    const int shots = equilibrium.shots;
+    const int integrations = equilibrium.integrations;
     equilibrium = close_span(span, mesh, start, frames, options);
-    equilibrium.shots += shots;
+    equilibrium.integrations += integrations;
     if (!equilibrium.converged) return equilibrium;
     const double force = bending_force(span, equilibrium.nodes);
     if (longest_of(mesh) * std::sqrt(force) <= largest_growth) break;
@@ -151,9 +151,9 @@ std::vector<RodState> states_at(const SpanEquilibrium& equilibrium, const RodSpa
       reached = nodes[i];
     }
     if (at > reached) {
-      const RodPiece piece{section_at(span, (nodes[i] + nodes[i + 1]) / 2), span.natural, reached,
-                           at - reached, equilibrium.contacts.surface_of(i)};
-      if (!follow_rod(piece, tolerance, state)) {
+      const RodElement piece{section_at(span, (nodes[i] + nodes[i + 1]) / 2), span.natural, reached,
+                             at - reached, equilibrium.contacts.surface_of(i)};
+      if (!integrate_rod(piece, tolerance, state)) {
         state.r.setConstant(std::numeric_limits<double>::quiet_NaN());
         state.R.setConstant(std::numeric_limits<double>::quiet_NaN());
       }
@@ -168,14 +168,15 @@ void carry_frames(const RodSpan& span, const RodMesh& mesh, double tolerance,
                   std::vector<RodState>& states) {
   const auto first =
       static_cast<std::size_t>(span.clamps.empty() ? 0 : node_at(mesh.s, span.clamps.front().at));
-  RodState& held = states[first];
-  held.R = span.clamps.empty() ? frame_along(held.t(), held.t().unitOrthogonal())
-                               : transported(span.first_frame, held.t());
+  RodState& first_state = states[first];
+  first_state.R = span.clamps.empty()
+                      ? frame_along(first_state.t(), first_state.t().unitOrthogonal())
+                      : transported(span.first_frame, first_state.t());
   // Returns the frame at the end of an interval that results from the frame at its begin.
   const auto carried = [&](std::size_t i) {
     RodState state = states[i];
     const auto interval = static_cast<Eigen::Index>(i);
-    const bool followed = follow_rod(piece_of(span, mesh, interval), tolerance, state);
+    const bool followed = integrate_rod(rod_element(span, mesh, interval), tolerance, state);
     return transported(followed ? state.R : states[i].R, states[i + 1].t());
   };
   for (std::size_t i = first; i + 1 < states.size(); ++i) states[i + 1].R = carried(i);

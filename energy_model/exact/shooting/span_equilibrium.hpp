@@ -17,7 +17,7 @@ namespace dlo::energy_model {
 struct SpanEquilibrium {
   bool converged = false;
   std::string message = "never ran";
-  int shots = 0;  ///< integrations of the whole span, with or without linearisation
+  int integrations = 0;  ///< integrations of the whole span, with or without linearisation
   /// Largest gap in r, R, m / f, n / f^2 at a node, where f^2 is the largest of |n|, |m|^2, the
   /// total load and 1 in the initial guess.
   double residual = -1;

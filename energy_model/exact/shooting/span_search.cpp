@@ -18,8 +18,8 @@ constexpr double same_directors = 1e-6;  // largest difference of directors of t
 constexpr std::size_t most_descents = 6;
 // Maximum number of polygons to shoot from while none converges to a minimum.
 constexpr std::size_t most_without_minimum = 16;
-constexpr int most_saddles_left = 8;  // maximum number of saddles to leave
-constexpr int finer_polygons = 2;     // number of finer polygons after a shot that has failed
+constexpr int most_saddle_departures = 8;  // maximum number of saddles to leave
+constexpr int finer_polygons = 2;          // number of finer polygons after a shot that has failed
 // Maximum number of intervals of a polygon on a finer mesh.
 constexpr Eigen::Index most_intervals = 1000;
 // Maximum number of Newton iterations; 6 to 12 are usual near a minimum.
@@ -30,7 +30,7 @@ constexpr double most_bend = 0.3;  // largest rotation of a stress-free polygon 
 
 /// Whether two equilibria are equal. The frames of a round rod without twist are arbitrary, so that
 /// only its tangents are compared.
-bool same(const RodSpan& span, const SpanEquilibrium& a, const SpanEquilibrium& b) {
+bool are_equal_equilibria(const RodSpan& span, const SpanEquilibrium& a, const SpanEquilibrium& b) {
   constexpr double coarse = 1e-10;
   const Eigen::VectorXd probes = Eigen::VectorXd::LinSpaced(33, 0, span.length);
   const std::vector<double> s(probes.begin(), probes.end());
@@ -70,7 +70,7 @@ class SpanSearch {
       found_.push_back(std::move(failed_));
     }
     sort_by_stability(found_);
-    found_.front().shots = shots_;
+    found_.front().integrations = integrations_;
     return {std::move(found_), complete};
   }
 
@@ -86,7 +86,7 @@ class SpanSearch {
                     .motion = span_.round() ? polygon.motion : Motion::in_space,
                     .max_iterations = search_iterations,
                     .deadline = deadline_});
-    shots_ += equilibrium.shots;
+    integrations_ += equilibrium.integrations;
     return equilibrium;
   }
 
@@ -94,7 +94,7 @@ class SpanSearch {
     RodMesh mesh = mesh_;
     const auto refine = [&](double longest) {
       RodMesh finer = make_mesh(span_, longest);
-      polygon = relax_on(span_, finer, mesh, polygon, deadline_);
+      polygon = relax_on_mesh(span_, finer, mesh, polygon, deadline_);
       mesh = std::move(finer);
     };
     // Under a large reaction the coarse polygon is not accurate enough.
@@ -115,14 +115,14 @@ class SpanSearch {
   /// by the gradient flow.
   void leave_saddles() {
     std::vector<double> energies;  // energies of the saddles that have been left
-    for (int i = 0; i < most_saddles_left && !deadline_.passed(); ++i) {
-      const SpanEquilibrium* lowest = missed_minimum(found_, energies);
+    for (int i = 0; i < most_saddle_departures && !deadline_.passed(); ++i) {
+      const SpanEquilibrium* lowest = saddle_below_minima(found_, energies);
       if (lowest == nullptr) return;
       energies.push_back(lowest->energy.total());
       SpanEquilibrium left = leave_saddle(
           span_, *lowest,
           {.tolerance = tolerance_, .max_iterations = search_iterations, .deadline = deadline_});
-      shots_ += left.shots;
+      integrations_ += left.integrations;
       add(std::move(left));
     }
   }
@@ -132,7 +132,7 @@ class SpanSearch {
     if (!equilibrium.converged) {
       failed_ = std::move(equilibrium);
     } else if (std::ranges::none_of(found_, [&](const SpanEquilibrium& other) {
-                 return same(span_, other, equilibrium);
+                 return are_equal_equilibria(span_, other, equilibrium);
                })) {
       found_.push_back(std::move(equilibrium));
     }
@@ -144,7 +144,7 @@ class SpanSearch {
   Deadline deadline_;
   std::vector<SpanEquilibrium> found_;
   SpanEquilibrium failed_;
-  int shots_ = 0;
+  int integrations_ = 0;
 };
 
 /// Whether two neighbouring grips are at least as far apart as the rod between them is long.
@@ -166,9 +166,9 @@ SpanEquilibrium shoot_from_lines(const RodSpan& span, double tolerance, const De
   std::vector<double> strains;
   double largest = total_load(span);
   for (std::size_t i = 0; i + 1 < holds.size(); ++i) {
-    const Eigen::Vector3d way = holds[i + 1].position - holds[i].position;
-    tangents.push_back(way.normalized());
-    strains.push_back(way.norm() / (holds[i + 1].at - holds[i].at) - 1);
+    const Eigen::Vector3d chord = holds[i + 1].position - holds[i].position;
+    tangents.push_back(chord.normalized());
+    strains.push_back(chord.norm() / (holds[i + 1].at - holds[i].at) - 1);
     largest = std::max(largest, std::abs(strains.back()) / yields);
   }
   const RodMesh mesh =
@@ -179,8 +179,8 @@ SpanEquilibrium shoot_from_lines(const RodSpan& span, double tolerance, const De
     while (i + 2 < holds.size() && mesh.s[k] >= holds[i + 1].at) ++i;
     RodState& state = start[static_cast<std::size_t>(k)];
     const double inside = std::clamp(mesh.s[k], holds[i].at, holds[i + 1].at);
-    const double way = (inside - holds[i].at) * (1 + strains[i]) + mesh.s[k] - inside;
-    state.r = holds[i].position + way * tangents[i];
+    const double distance = (inside - holds[i].at) * (1 + strains[i]) + mesh.s[k] - inside;
+    state.r = holds[i].position + distance * tangents[i];
     state.R = frame_along(tangents[i], tangents[i].unitOrthogonal());
     if (inside == mesh.s[k] && inside < holds.back().at) {
       state.n = strains[i] / yields * tangents[i];
@@ -191,10 +191,11 @@ SpanEquilibrium shoot_from_lines(const RodSpan& span, double tolerance, const De
                     {.tolerance = tolerance, .deadline = deadline});
 }
 
-SpanSearchResult search_released(const RodSpan& span, double tolerance, const Deadline& deadline) {
+SpanSearchResult search_without_frames(const RodSpan& span, double tolerance,
+                                       const Deadline& deadline) {
   if (span.parts.front().section.stretch == 0) return SpanSearch(span, tolerance, deadline).run();
   if (is_pulled_straight(span)) return {{shoot_from_lines(span, tolerance, deadline)}, true};
-  SpanSearchResult search = SpanSearch(stretching_by(span, 0), tolerance, deadline).run();
+  SpanSearchResult search = SpanSearch(with_stretch_share(span, 0), tolerance, deadline).run();
   for (SpanEquilibrium& found : search.found) {
     found = stretch_span(span, found, tolerance, deadline);
   }
@@ -202,7 +203,7 @@ SpanSearchResult search_released(const RodSpan& span, double tolerance, const De
   if (span.holds.size() > 1) {
     SpanEquilibrium pressed = shoot_from_lines(span, tolerance, deadline);
     const bool known = std::ranges::any_of(search.found, [&](const SpanEquilibrium& other) {
-      return other.converged && same(span, other, pressed);
+      return other.converged && are_equal_equilibria(span, other, pressed);
     });
     if (pressed.converged && !known) search.found.push_back(std::move(pressed));
   }
@@ -221,7 +222,7 @@ void check_load(const RodSpan& span) {
 
 double resolving_interval(const RodSpan& span, double force) {
   double longest = longest_interval(span, force);
-  for (const Eigen::Vector3d& bend : natural_probes(span, 32)) {
+  for (const Eigen::Vector3d& bend : sample_natural_strains(span, 32)) {
     longest = std::min(longest, most_bend / std::max(bend.norm(), 1.0));
   }
   return longest;
@@ -230,7 +231,7 @@ double resolving_interval(const RodSpan& span, double force) {
 SpanSearchResult search_span(const RodSpan& span, double tolerance, const Deadline& deadline) {
   check_load(span);
   const RodSpan released = without_frames(span);
-  SpanSearchResult search = search_released(released, tolerance, deadline);
+  SpanSearchResult search = search_without_frames(released, tolerance, deadline);
   if (!span.twisted()) return search;
   SpanEquilibrium twisted = twist_span(span, search.found.front(), tolerance, deadline);
   return {{std::move(twisted)}, search.complete && !deadline.passed()};

@@ -14,10 +14,10 @@ namespace {
 
 using std::numbers::pi;
 
-constexpr int most_shots = 20000;  // maximum number of shots of a scan
-constexpr int deepest_cell = 6;    // maximum number of halvings of a cell of the scan
+constexpr int most_integrations = 20000;  // maximum number of shots of a scan
+constexpr int deepest_cell = 6;           // maximum number of halvings of a cell of the scan
 // Allowed error of the cubic in a cell, divided by the residual there.
-constexpr double cell_resolved = 0.02;
+constexpr double cell_tolerance = 0.02;
 constexpr double double_root = 1e-11;  // residual of a double root: rounding error of a shot
 
 /// Tip angle of a shot, its residual at the clamp, and the derivative of the residual by the tip
@@ -39,9 +39,9 @@ class TipShooter {
         mesh_(make_mesh(span, span.length)),
         tolerance_(tolerance),
         deadline_(deadline),
-        sense_(span.clamps.front().at == 0 ? 1 : -1),
+        clamp_sign_(span.clamps.front().at == 0 ? 1 : -1),
         bending_(span.parts.front().section.bending) {
-    const Eigen::Vector3d along = sense_ * span.clamps.front().direction;
+    const Eigen::Vector3d along = clamp_sign_ * span.clamps.front().direction;
     normal_ = along.cross(span.plane->y);
     const Eigen::Vector3d& weight = span.parts.front().section.weight;
     Eigen::Vector3d last = mesh_.load.col(node(mesh_, 0));
@@ -60,7 +60,7 @@ class TipShooter {
     }
   }
 
-  int shots = 0;
+  int integrations = 0;
   int failures = 0;  // shots and root searches that did not converge
   bool out_of_time = false;
 
@@ -74,10 +74,11 @@ class TipShooter {
   }
 
   ScanPoint point(double start) {
-    ++shots;
+    ++integrations;
     out_of_time = out_of_time || deadline_.passed();
     std::vector<double> y;
-    if (out_of_time || !shoot(mesh_, start, Components::changes, y, [](Eigen::Index) {})) {
+    if (out_of_time ||
+        !shoot(mesh_, start, Components::tip_angle_derivatives, y, [](Eigen::Index) {})) {
       ++failures;
       return {start, NAN, NAN};
     }
@@ -89,23 +90,23 @@ class TipShooter {
   /// Empty if the shot fails.
   [[nodiscard]] std::vector<RodState> states(const RodMesh& mesh, double start) const {
     std::vector<RodState> states(static_cast<std::size_t>(mesh.s.size()));
-    const Eigen::Matrix3Xd carried = carried_force(span_, mesh).after_node;
+    const Eigen::Matrix3Xd carried = internal_force(span_, mesh).after_node;
     std::vector<double> y;
     const double unit = unit_of(start);
     const auto set_state = [&](Eigen::Index i) {
       RodState& state = states[static_cast<std::size_t>(i)];
       const double psi = unit * y[0];
-      const Eigen::Vector3d tangent = sense_ * (std::cos(psi) * x_ + std::sin(psi) * y_);
+      const Eigen::Vector3d tangent = clamp_sign_ * (std::cos(psi) * x_ + std::sin(psi) * y_);
       state.r = y[2] * x_ + y[3] * y_;
       state.R = frame_along(tangent, normal_);
       // The derivative of psi by sigma is minus the curvature.
-      state.m = -sense_ * bending_ * unit * y[1] * normal_;
+      state.m = -clamp_sign_ * bending_ * unit * y[1] * normal_;
       state.n = carried.col(i);
     };
     if (!shoot(mesh, start, Components::position, y, set_state)) return {};
     states.back().m.setZero();
     states.back().n.setZero();
-    const Eigen::Vector3d clamp = (sense_ > 0 ? states.front() : states.back()).r;
+    const Eigen::Vector3d clamp = (clamp_sign_ > 0 ? states.front() : states.back()).r;
     for (RodState& state : states) state.r += span_.holds.front().position - clamp;
     return states;
   }
@@ -113,27 +114,27 @@ class TipShooter {
  private:
   /// Third and fourth component of a shot: the derivatives of the first two by the tip angle, or
   /// the position.
-  enum class Components { changes, position };
+  enum class Components { tip_angle_derivatives, position };
 
-  struct Piece {
+  struct ShotData {
     Eigen::Vector2d weight;
     Eigen::Vector2d loads;  // sum of the loads between the tip and sigma
     double begin = 0;       // sigma
     double unit = 1;
-    Components components = Components::changes;
+    Components components = Components::tip_angle_derivatives;
   };
 
   /// Returns the node k from the tip.
   [[nodiscard]] Eigen::Index node(const RodMesh& mesh, Eigen::Index k) const {
-    return sense_ > 0 ? mesh.intervals() - k : k;
+    return clamp_sign_ > 0 ? mesh.intervals() - k : k;
   }
 
   [[nodiscard]] Eigen::Vector2d in_frame(const Eigen::Vector3d& force) const {
-    Eigen::Vector2d own = Eigen::Vector2d(x_.dot(force), y_.dot(force)) / bending_;
+    Eigen::Vector2d local_force = Eigen::Vector2d(x_.dot(force), y_.dot(force)) / bending_;
     // A force that is parallel up to rounding is made parallel, because it must not disturb an
     // exponentially small psi.
-    if (std::abs(own.y()) < 1e-14 * own.norm()) own.y() = 0;
-    return own;
+    if (std::abs(local_force.y()) < 1e-14 * local_force.norm()) local_force.y() = 0;
+    return local_force;
   }
 
   /// Returns the unit of psi in a shot. If psi may be exponentially small at the tip, its relative
@@ -143,11 +144,11 @@ class TipShooter {
   }
 
   static int rates(double at, const double* y, double* rate, void* data) {
-    const auto& piece = *static_cast<const Piece*>(data);
+    const auto& piece = *static_cast<const ShotData*>(data);
     const Eigen::Vector2d n = (piece.begin + at) * piece.weight + piece.loads;
     const double sine = std::sin(piece.unit * y[0]);
     const double cosine = std::cos(piece.unit * y[0]);
-    const bool changes = piece.components == Components::changes;
+    const bool changes = piece.components == Components::tip_angle_derivatives;
     rate[0] = y[1];
     rate[1] = (n.x() * sine - n.y() * cosine) / piece.unit;
     rate[2] = changes ? y[3] : -cosine;
@@ -162,16 +163,16 @@ class TipShooter {
   template <typename Visit>
   bool shoot(const RodMesh& mesh, double start, Components components, std::vector<double>& y,
              const Visit& at_node) const {
-    Piece piece{weight_, Eigen::Vector2d::Zero(), 0, unit_of(start), components};
-    y = {start / piece.unit, 0, components == Components::changes ? 1.0 : 0.0, 0};
+    ShotData piece{weight_, Eigen::Vector2d::Zero(), 0, unit_of(start), components};
+    y = {start / piece.unit, 0, components == Components::tip_angle_derivatives ? 1.0 : 0.0, 0};
     for (Eigen::Index k = 0;; ++k) {
       const Eigen::Index i = node(mesh, k);
-      if (sense_ > 0) at_node(i);
+      if (clamp_sign_ > 0) at_node(i);
       piece.loads += in_frame(mesh.load.col(i));
       y[1] -= normal_.dot(mesh.couple.col(i)) / bending_ / piece.unit;
-      if (sense_ < 0) at_node(i);
+      if (clamp_sign_ < 0) at_node(i);
       if (k == mesh.intervals()) return true;
-      const double width = mesh.width(sense_ > 0 ? i - 1 : i);
+      const double width = mesh.width(clamp_sign_ > 0 ? i - 1 : i);
       if (!integrate(rates, &piece, width, tolerance_, y)) return false;
       piece.begin += width;
     }
@@ -181,7 +182,7 @@ class TipShooter {
   RodMesh mesh_;  // mesh with no other nodes than ends and loads
   double tolerance_;
   Deadline deadline_;
-  double sense_;  // 1: the clamp is at the begin; -1: at the end
+  double clamp_sign_;  // 1: the clamp is at the begin; -1: at the end
   double bending_;
   Eigen::Vector3d normal_, x_, y_;
   double clamp_angle_ = 0;  // psi at the clamp, up to whole turns
@@ -215,7 +216,7 @@ class TipScan {
     ScanPoint previous{0, NAN, NAN};
     for (const double start : scan_grid(shooter_)) {
       const ScanPoint next = shooter_.point(start);
-      look_into(previous, next, 0);
+      subdivide(previous, next, 0);
       // A root without a change of sign is only possible for a rod that is straight at this tip
       // angle.
       const bool straight = next.start == 0 || std::abs(next.start) == pi;
@@ -233,7 +234,7 @@ class TipScan {
   static bool is_zero(const ScanPoint& point) { return std::abs(point.residual) < 1e-15; }
 
   /// Halves a cell until a cubic through its ends predicts the residual in its middle.
-  void look_into(const ScanPoint& low, const ScanPoint& high, int depth) {
+  void subdivide(const ScanPoint& low, const ScanPoint& high, int depth) {
     if (!std::isfinite(low.residual) || !std::isfinite(high.residual)) return;
     const ScanPoint middle = shooter_.point((low.start + high.start) / 2);
     if (!std::isfinite(middle.residual)) return;
@@ -241,13 +242,13 @@ class TipScan {
                          (high.start - low.start) / 8 * (low.slope - high.slope);
     const double size = std::max(
         {std::abs(low.residual), std::abs(middle.residual), std::abs(high.residual), 1e-12});
-    const bool resolved = std::abs(middle.residual - cubic) <= cell_resolved * size;
-    if (resolved || depth == deepest_cell || shooter_.shots > most_shots) {
+    const bool resolved = std::abs(middle.residual - cubic) <= cell_tolerance * size;
+    if (resolved || depth == deepest_cell || shooter_.integrations > most_integrations) {
       find_roots(low, middle);
       find_roots(middle, high);
     } else {
-      look_into(low, middle, depth + 1);
-      look_into(middle, high, depth + 1);
+      subdivide(low, middle, depth + 1);
+      subdivide(middle, high, depth + 1);
     }
   }
 
@@ -330,12 +331,12 @@ SpanSearchResult scan_tip(const RodSpan& span, double tolerance, const Deadline&
       ++shooter.failures;
       continue;
     }
-    const RodState& held = from_begin ? found.nodes.front() : found.nodes.back();
-    found.residual = (held.t() - span.clamps.front().direction).norm();
+    const RodState& clamped_end = from_begin ? found.nodes.front() : found.nodes.back();
+    found.residual = (clamped_end.t() - span.clamps.front().direction).norm();
     result.found.push_back(std::move(found));
   }
   result.complete = !shooter.out_of_time;
-  if (shooter.failures > 0 || shooter.shots > most_shots) {
+  if (shooter.failures > 0 || shooter.integrations > most_integrations) {
     result.not_searched = "some shots from the tip failed";
   }
   if (result.found.empty()) {
@@ -350,7 +351,7 @@ SpanSearchResult scan_tip(const RodSpan& span, double tolerance, const Deadline&
   };
   std::ranges::stable_sort(result.found, std::ranges::greater{}, height_of_tip);
   sort_by_stability(result.found);
-  for (SpanEquilibrium& found : result.found) found.shots = shooter.shots;
+  for (SpanEquilibrium& found : result.found) found.integrations = shooter.integrations;
   return result;
 }
 

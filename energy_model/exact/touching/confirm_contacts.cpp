@@ -16,7 +16,7 @@ namespace {
 // Largest accepted depth, in l; a tenth of that of solve_energy().
 constexpr double confirmed_depth = 1e-9;
 // Largest accepted tensile contact force, divided by 1 + the largest force.
-constexpr double allowed_pull = 1e-7;
+constexpr double largest_tensile_force = 1e-7;
 constexpr int samples = 8;  // parts per interval at whose ends pressures are computed
 // Width in l below which a part is not halved further: no point within it is deeper than its ends
 // by more than this.
@@ -45,12 +45,13 @@ class ClosedRod {
       part.force = force_at(placed.begin_force);
       if (part.kind == ContactKind::lying) {
         part.force += force_at(placed.end_force);
-        part.begin_force = force_unit_ * push_at(placed.begin_force);
-        part.end_force = force_unit_ * push_at(placed.end_force);
-        part.moment = problem_.length *
-                      (r_at(placed.end) - r_at(placed.begin)).cross(force_at(placed.end_force));
+        part.begin_force = force_unit_ * force_magnitude_at(placed.begin_force);
+        part.end_force = force_unit_ * force_magnitude_at(placed.end_force);
+        part.moment =
+            problem_.length *
+            (position_at(placed.end) - position_at(placed.begin)).cross(force_at(placed.end_force));
         for (Eigen::Index i = placed.begin; i < placed.end; ++i) {
-          add_pressure(i, r_at(placed.begin), part);
+          add_pressure(i, position_at(placed.begin), part);
         }
       }
       result.obstacles[part.obstacle] += part.force;
@@ -87,7 +88,8 @@ class ClosedRod {
       return "the rod penetrates by " + std::to_string(result.penetration) +
              " m an obstacle that is not among the contacts of the start";
     }
-    return least < -allowed_pull * largest ? "a contact force would have to be tensile" : "";
+    return least < -largest_tensile_force * largest ? "a contact force would have to be tensile"
+                                                    : "";
   }
 
  private:
@@ -129,9 +131,9 @@ class ClosedRod {
     if (!(-least > 1.01 * depth + confirmed_depth) || part.width < least_halved_width) return depth;
     const double half = part.width / 2;
     RodState middle = part.begin;
-    const RodPiece piece{section, start_.span.natural, part.s, half,
-                         closed_.contacts.surface_of(i)};
-    if (!follow_rod(piece, tolerance_, middle)) return NAN;
+    const RodElement piece{section, start_.span.natural, part.s, half,
+                           closed_.contacts.surface_of(i)};
+    if (!integrate_rod(piece, tolerance_, middle)) return NAN;
     depth = deepest(i, {part.s, half, part.begin, middle}, depth);
     return std::isnan(depth) ? depth : deepest(i, {part.s + half, half, middle, part.end}, depth);
   }
@@ -158,15 +160,15 @@ class ClosedRod {
     const double width = (closed_.s[i + 1] - closed_.s[i]) / samples;
     for (int k = 0; k < samples; ++k) {
       RodState state = states.back();
-      const RodPiece piece{section_of(i), start_.span.natural, closed_.s[i] + k * width, width,
-                           closed_.contacts.surface_of(i)};
-      if (!follow_rod(piece, tolerance_, state)) state.r.setConstant(NAN);
+      const RodElement piece{section_of(i), start_.span.natural, closed_.s[i] + k * width, width,
+                             closed_.contacts.surface_of(i)};
+      if (!integrate_rod(piece, tolerance_, state)) state.r.setConstant(NAN);
       states.push_back(state);
     }
     return states;
   }
 
-  [[nodiscard]] double push_at(const std::optional<std::size_t>& contact) const {
+  [[nodiscard]] double force_magnitude_at(const std::optional<std::size_t>& contact) const {
     return contact ? closed_.contacts.nodes[*contact].force : 0;
   }
 
@@ -177,7 +179,7 @@ class ClosedRod {
     return force_unit_ * node.force * node.gap(r).gradient;
   }
 
-  [[nodiscard]] const Eigen::Vector3d& r_at(Eigen::Index node) const {
+  [[nodiscard]] const Eigen::Vector3d& position_at(Eigen::Index node) const {
     return closed_.nodes[static_cast<std::size_t>(node)].r;
   }
 
@@ -186,9 +188,9 @@ class ClosedRod {
   void add_pressure(Eigen::Index i, const Eigen::Vector3d& about, ContactPart& part) const {
     constexpr std::array<double, samples + 1> boole = {7, 32, 12, 32, 14, 32, 12, 32, 7};
     const std::vector<RodState> states = along(i);
-    part.force +=
-        force_unit_ * (states.front().n - states.back().n -
-                       section_of(i).weight_from(closed_.s[i], closed_.s[i + 1] - closed_.s[i]));
+    part.force += force_unit_ *
+                  (states.front().n - states.back().n -
+                   section_of(i).weight_of_interval(closed_.s[i], closed_.s[i + 1] - closed_.s[i]));
     const Surface& surface = *closed_.contacts.surface_of(i);
     const double share = (closed_.s[i + 1] - closed_.s[i]) / samples * 2 / 45;
     for (std::size_t k = 0; k < states.size(); ++k) {
@@ -228,7 +230,7 @@ std::optional<Equilibrium> confirm_contacts(const Problem& problem, const Equili
                                       {.tolerance = tolerance, .deadline = deadline});
   if (!closed.converged) {
     Equilibrium failed;
-    failed.evaluations = closed.shots;
+    failed.evaluations = closed.integrations;
     failed.residual = closed.residual;
     failed.status = deadline.passed() ? SolveStatus::time_limit : SolveStatus::failed;
     failed.message = "Newton's method did not converge with the contacts of the start";

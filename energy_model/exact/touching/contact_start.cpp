@@ -22,7 +22,7 @@ class Layout {
         shape_(shape),
         l_(problem.length),
         force_unit_(bending_unit(problem) / (l_ * l_)) {
-    start_.span = whole(problem);
+    start_.span = whole_span(problem);
     const Eigen::Vector3d& origin = problem.grips.front().position;
     for (const Obstacle& obstacle : problem.obstacles) {
       start_.bodies.push_back(obstacle.body.transformed(origin, Eigen::Matrix3d::Identity(), l_));
@@ -63,8 +63,8 @@ class Layout {
       for (const double at : {contact.begin, contact.end}) touched.push_back(snapped(at / l_));
     }
     std::sort(touched.begin(), touched.end());
-    const auto same = [](double a, double b) { return b - a < arc_length_rounding; };
-    touched.erase(std::unique(touched.begin(), touched.end(), same), touched.end());
+    const auto is_duplicate = [](double a, double b) { return b - a < arc_length_rounding; };
+    touched.erase(std::unique(touched.begin(), touched.end(), is_duplicate), touched.end());
     force = std::max(1.0, force / least_bending_stiffness(start_.span));
     const double longest = std::min(start_.span.length / 8, largest_growth / std::sqrt(force));
     start_.mesh = make_mesh(start_.span, longest, touched);
@@ -108,7 +108,7 @@ class Layout {
     if (start_.mesh.hold[static_cast<std::size_t>(node)] != nullptr) return std::nullopt;
     RodContact contact;
     contact.node = node;
-    contact.moves = !start_.mesh.is_fixed(node);
+    contact.is_position_unknown = !start_.mesh.is_fixed(node);
     contact.force = force / force_unit_;
     start_.mesh.contacts.nodes.push_back(contact);
     return start_.mesh.contacts.nodes.size() - 1;
@@ -147,7 +147,7 @@ class Layout {
         }
         if (i + 1 == contact.end) break;
         RodState end = state;
-        if (!follow_rod(piece_of(start_.span, start_.mesh, i), tolerance, end)) {
+        if (!integrate_rod(rod_element(start_.span, start_.mesh, i), tolerance, end)) {
           return false;
         }
         start_.states[static_cast<std::size_t>(i + 1)].n = end.n;

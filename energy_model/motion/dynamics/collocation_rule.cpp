@@ -22,10 +22,10 @@ CollocationRule rule_at(const Eigen::VectorXd& nodes) {
     at_nodes.row(i) = values;
     integrated.row(i) = integrals;
   }
-  rule.through = at_nodes.inverse();
-  rule.inner = integrated * rule.through;
-  rule.weights = rule.through.row(0).transpose();
-  rule.twice = rule.inner * rule.inner;
+  rule.to_legendre = at_nodes.inverse();
+  rule.inner = integrated * rule.to_legendre;
+  rule.weights = rule.to_legendre.row(0).transpose();
+  rule.double_integrals = rule.inner * rule.inner;
   rule.last = rule.weights.transpose() * rule.inner;
   return rule;
 }
@@ -36,7 +36,7 @@ Eigen::RowVectorXd CollocationRule::interpolation(double at) const {
   Eigen::VectorXd values(nodes.size());
   Eigen::VectorXd integrals(nodes.size());
   legendre(at, values, integrals);
-  return values.transpose() * through;
+  return values.transpose() * to_legendre;
 }
 
 Eigen::MatrixXd CollocationRule::extrapolation(double ratio) const {

@@ -21,13 +21,13 @@ constexpr const char* simulate_name = "simulate";
 
 /// Returns the rod with a motion for each grip, with the problem at the begin, and with cuts at
 /// point masses.
-MovingRod completed(MovingRod rod, double begin) {
+MovingRod with_all_motions(MovingRod rod, double begin) {
   const Problem given = rod.problem;
   Problem& problem = rod.problem;
   rod.motions.resize(problem.grips.size());
   for (std::size_t i = 0; i < problem.grips.size(); ++i) {
     Grip& grip = problem.grips[i];
-    if (!rod.motions[i]) rod.motions[i] = standing(grip.position);
+    if (!rod.motions[i]) rod.motions[i] = fixed_grip(grip.position);
     const GripPose pose = rod.motions[i](begin);
     grip.position = pose.position;
     const Eigen::Quaterniond turn = pose.turn.normalized();
@@ -60,7 +60,7 @@ void check_rod(const MovingRod& rod) {
 
 /// Prescribes the frame at the end of a span between clamps with frames. A rod without material
 /// directors gets them, so that strains of twist are among the unknowns.
-void hold_last_frame(const Problem& problem, PlacedSpan& placed) {
+void prescribe_end_frame(const Problem& problem, PlacedSpan& placed) {
   if (!placed.frames) return;
   Span& span = placed.span;
   span.planar = false;
@@ -69,7 +69,7 @@ void hold_last_frame(const Problem& problem, PlacedSpan& placed) {
     span.stiffness[2] = problem.torsional_stiffness / bending_unit(problem);
     span.principal_d1 = placed.frames->start_d1;
   }
-  span.twist = Span::Twist{placed.frames->stiffness, held_end_d1(*placed.frames, span)};
+  span.twist = Span::Twist{placed.frames->stiffness, prescribed_end_d1(*placed.frames, span)};
 }
 
 void check_options(std::span<const double> times, const DynamicsOptions& options) {
@@ -105,7 +105,7 @@ std::vector<std::vector<PointMass>> masses_by_span(const MovingRod& rod,
 }
 
 /// Combines the spans' results at one of the times that all have reached.
-MovingFrame frame_of_all(const MovingRod& rod, const std::vector<SpanRun>& runs, std::size_t k) {
+MovingFrame combine_frames(const MovingRod& rod, const std::vector<SpanRun>& runs, std::size_t k) {
   MovingFrame frame;
   frame.grips.resize(rod.problem.grips.size());
   frame.obstacles.assign(rod.problem.obstacles.size(), Eigen::Vector3d::Zero());
@@ -127,21 +127,22 @@ MovingFrame frame_of_all(const MovingRod& rod, const std::vector<SpanRun>& runs,
 }
 
 /// Changes the zero of gravity and load energies from the spans' own anchors to the first anchor.
-void move_zero(const MovingRod& rod, const std::vector<PlacedSpan>& spans, EnergyBalance& energy) {
+void shift_energy_zero(const MovingRod& rod, const std::vector<PlacedSpan>& spans,
+                       EnergyBalance& energy) {
   const double l = rod.problem.length;
   const double force = bending_unit(rod.problem) / (l * l);
   for (const PlacedSpan& placed : spans) {
-    const Eigen::Vector3d apart =
+    const Eigen::Vector3d offset =
         placed.frame * (placed.anchor_position - spans.front().anchor_position);
-    energy.gravity -= force * apart.dot(placed.span.weight_between(0, placed.span.length));
-    for (const Span::Load& load : placed.span.loads) energy.load -= force * apart.dot(load.force);
+    energy.gravity -= force * offset.dot(placed.span.weight_between(0, placed.span.length));
+    for (const Span::Load& load : placed.span.loads) energy.load -= force * offset.dot(load.force);
   }
 }
 
 /// Adds the loads on clamps to the reactions and the work of these clamps, which alone carry them.
 void add_loads_on_clamps(const MovingRod& rod, double begin, MovingFrame& frame) {
   for (const Load& load : rod.problem.loads) {
-    const std::optional<std::size_t> clamp = clamp_under(rod.problem, load);
+    const std::optional<std::size_t> clamp = clamp_at_load(rod.problem, load);
     if (!clamp) continue;
     const Eigen::Vector3d moved =
         rod.motions[*clamp](frame.time).position - rod.motions[*clamp](begin).position;
@@ -186,9 +187,9 @@ void add_frames(const MovingRod& rod, const std::vector<PlacedSpan>& spans,
   EnergyBalance first;
   double largest_imbalance = 0;
   for (std::size_t k = 0; k < reached; ++k) {
-    MovingFrame frame = frame_of_all(rod, runs, k);
+    MovingFrame frame = combine_frames(rod, runs, k);
     frame.time = k == 0 ? begin : times[k - 1];
-    move_zero(rod, spans, frame.energy);
+    shift_energy_zero(rod, spans, frame.energy);
     add_loads_on_clamps(rod, begin, frame);
     if (k == 0) first = frame.energy;
     const EnergyBalance& energy = frame.energy;
@@ -209,14 +210,14 @@ Dynamics simulate(const MovingRod& rod, const StartingShape& start, std::span<co
   check_options(times, options);
   const Deadline deadline(options.time_limit);
   const double begin = times.empty() ? 0 : std::min(0.0, times.front());
-  const MovingRod complete = completed(rod, begin);
+  const MovingRod complete = with_all_motions(rod, begin);
   require(!has_couples(complete.problem), simulate_name, "torque of a load", 1,
           "0: simulate() does not support couples");
   require(!complete.problem.confined_to_plane, simulate_name, "confined_to_plane", 1,
           "false: only solve_energy() confines a rod to a plane");
   std::vector<PlacedSpan> spans = split(complete.problem);
   for (PlacedSpan& placed : spans) {
-    hold_last_frame(complete.problem, placed);
+    prescribe_end_frame(complete.problem, placed);
     require_affordable(placed.span, options.terms, simulate_name);
   }
   const std::vector<std::vector<PointMass>> masses = masses_by_span(complete, spans);

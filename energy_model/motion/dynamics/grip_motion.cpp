@@ -9,7 +9,7 @@
 
 namespace dlo::energy_model {
 
-GripMotion standing(const Eigen::Vector3d& position) { return moving(position, {}, {}, {}, {}); }
+GripMotion fixed_grip(const Eigen::Vector3d& position) { return moving(position, {}, {}, {}, {}); }
 
 GripMotion moving(const Eigen::Vector3d& position, const Eigen::Vector3d& along,
                   std::function<MotionValue(double)> distance, const Eigen::Vector3d& about,
@@ -21,10 +21,10 @@ GripMotion moving(const Eigen::Vector3d& position, const Eigen::Vector3d& along,
     GripPose pose;
     pose.position = position;
     if (distance) {
-      const MotionValue gone = distance(time);
-      pose.position += gone.value * axis;
-      pose.velocity = gone.rate * axis;
-      pose.acceleration = gone.acceleration * axis;
+      const MotionValue displacement = distance(time);
+      pose.position += displacement.value * axis;
+      pose.velocity = displacement.rate * axis;
+      pose.acceleration = displacement.acceleration * axis;
     }
     if (angle) {
       const MotionValue turned = angle(time);

@@ -19,7 +19,7 @@ constexpr double motion_plane_rounding = 1e-10;
 
 /// Factor by which rigid obstacles are stiffened for another run if the rod enters them too deeply,
 /// which halves the depth of an impact; and maximum number of runs.
-constexpr double stiffer = 8;
+constexpr double obstacle_stiffening = 8;
 constexpr int most_repeats = 20;
 
 /// Whether the drive moves a planar span out of its plane.
@@ -27,25 +27,25 @@ bool leaves_plane(const SpanDrive& drive) {
   const auto out = [](const Eigen::Vector3d& along) {
     return std::abs(along.z()) > motion_plane_rounding * std::max(1.0, along.norm());
   };
-  const auto leans = [](const Eigen::Vector3d& about) {
+  const auto tilts = [](const Eigen::Vector3d& about) {
     return about.head<2>().norm() > motion_plane_rounding * std::max(1.0, about.norm());
   };
-  const auto carries_out = [&](const BodyPlace& place) {
-    return out(place.velocity) || leans(place.spin);
+  const auto moves_out = [&](const ObstaclePose& place) {
+    return out(place.velocity) || tilts(place.spin);
   };
-  return leans(drive.spin) || leans(drive.end_spin) || out(drive.grips.front().value) ||
+  return tilts(drive.spin) || tilts(drive.end_spin) || out(drive.grips.front().value) ||
          out(drive.grips.front().acceleration) ||
          std::any_of(drive.grips.begin(), drive.grips.end(),
-                     [&](const Moving& grip) { return out(grip.rate); }) ||
-         std::any_of(drive.obstacles.begin(), drive.obstacles.end(), carries_out);
+                     [&](const VectorMotion& grip) { return out(grip.rate); }) ||
+         std::any_of(drive.obstacles.begin(), drive.obstacles.end(), moves_out);
 }
 
 /// Returns the drive at the same positions with zero velocities and accelerations.
 SpanDrive at_rest(SpanDrive drive) {
   drive.spin = drive.spin_rate = drive.end_spin = Eigen::Vector3d::Zero();
-  for (Moving& grip : drive.grips) grip = {grip.value};
+  for (VectorMotion& grip : drive.grips) grip = {grip.value};
   for (AcrossDirector& across : drive.across_end) across.direction = {across.direction.value};
-  for (BodyPlace& place : drive.obstacles) {
+  for (ObstaclePose& place : drive.obstacles) {
     place.velocity = place.spin = Eigen::Vector3d::Zero();
   }
   return drive;
@@ -53,7 +53,7 @@ SpanDrive at_rest(SpanDrive drive) {
 
 /// Evaluates a start shape at the nodes. Angles of frames are accumulated from the start in small
 /// steps.
-StartShape start_at(const TangentField& field, const Eigen::VectorXd& nodes) {
+StartShape start_shape_at(const TangentField& field, const Eigen::VectorXd& nodes) {
   constexpr Eigen::Index steps = 16;  // between neighbouring nodes
   Eigen::VectorXd s(steps * nodes.size() + 1);
   s[0] = 0;
@@ -107,7 +107,7 @@ class MovingSpan {
       result.steps = steps;
       if (result.status == SolveStatus::converged || result.left_plane) break;
       if (!(result.depth > contact.depth * length_) || deadline.passed()) break;
-      contact.stiffness *= stiffer;
+      contact.stiffness *= obstacle_stiffening;
     }
     return result;
   }
@@ -120,15 +120,15 @@ class MovingSpan {
   }
 
   /// Returns the rotation from space to the axes of the clamp at the start.
-  [[nodiscard]] Eigen::Matrix3d to_axes(double time) const {
+  [[nodiscard]] Eigen::Matrix3d rotation_to_axes(double time) const {
     if (!placed_.span.start_direction) return placed_.frame;
     return placed_.frame * pose(placed_.anchor_grip, time).turn.conjugate().toRotationMatrix();
   }
 
   /// Returns an obstacle's place: its point x at the begin has moved to p + T (x - p0).
-  [[nodiscard]] BodyPlace place(std::size_t obstacle, double seconds,
-                                const Eigen::Matrix3d& axes) const {
-    BodyPlace result;
+  [[nodiscard]] ObstaclePose place(std::size_t obstacle, double seconds,
+                                   const Eigen::Matrix3d& axes) const {
+    ObstaclePose result;
     result.turn = axes * placed_.frame.transpose();
     if (obstacle >= rod_.obstacle_motions.size() || !rod_.obstacle_motions[obstacle]) return result;
     const GripPose first = rod_.obstacle_motions[obstacle](begin_);
@@ -145,7 +145,7 @@ class MovingSpan {
 
   [[nodiscard]] SpanDrive drive(double time) const {
     const double seconds = time * time_;
-    const Eigen::Matrix3d axes = to_axes(seconds);
+    const Eigen::Matrix3d axes = rotation_to_axes(seconds);
     SpanDrive result;
     result.turn = axes * placed_.frame.transpose();
     std::vector<GripPose> poses;
@@ -187,7 +187,7 @@ class MovingSpan {
   [[nodiscard]] SpanInertia inertia(const std::vector<PointMass>& masses) const {
     SpanInertia result;
     result.per_length =
-        masses_per_length(rod_.problem, rod_.inertia, placed_, pieces_of(placed_.span));
+        masses_per_length(rod_.problem, rod_.inertia, placed_, elements_of(placed_.span));
     for (double& mass : result.per_length) mass /= mass_;
     for (const PointMass& point : masses) {
       result.points.push_back({placed_.s_of(point.at, length_), point.mass / mass_});
@@ -200,7 +200,7 @@ class MovingSpan {
 
   /// Returns the breaks in the span's units, ascending. Breaks at the same instant cause one
   /// impulse.
-  [[nodiscard]] std::vector<double> own_breaks() const {
+  [[nodiscard]] std::vector<double> span_breaks() const {
     std::vector<double> breaks = rod_.breaks;
     for (double& time : breaks) time /= time_;
     std::sort(breaks.begin(), breaks.end());
@@ -255,20 +255,20 @@ class MovingSpan {
   /// elements and the nodes between.
   [[nodiscard]] Eigen::MatrixX3d point_velocities(const StartingVelocities& velocities,
                                                   const SpanDynamics& model) const {
-    const std::vector<Piece> pieces = pieces_of(placed_.span);
-    const Eigen::Index nodes = model.nodes().size() / std::ssize(pieces);
+    const std::vector<Element> elements = elements_of(placed_.span);
+    const Eigen::Index nodes = model.nodes().size() / std::ssize(elements);
     std::vector<double> arc_lengths;
     const auto add = [&](double s) {
       const double arc = placed_.start + (placed_.reversed ? -s : s) * length_;
       arc_lengths.push_back(std::clamp(arc, 0.0, length_));
     };
-    for (std::size_t e = 0; e < pieces.size(); ++e) {
-      add(pieces[e].begin);
+    for (std::size_t e = 0; e < elements.size(); ++e) {
+      add(elements[e].begin);
       const Eigen::Index first = static_cast<Eigen::Index>(e) * nodes;
       for (Eigen::Index q = 0; q < nodes; ++q) add(model.nodes()[first + q]);
-      add(pieces[e].end());
+      add(elements[e].end());
     }
-    return (time_ / length_) * (to_axes(begin_) * velocities(arc_lengths)).transpose();
+    return (time_ / length_) * (rotation_to_axes(begin_) * velocities(arc_lengths)).transpose();
   }
 
   [[nodiscard]] SpanFrame frame(SpanIntegrator& integrator, SpanDynamics& model,
@@ -277,7 +277,7 @@ class MovingSpan {
     const Eigen::VectorXd multipliers = integrator.consistent_accelerations(at);
     const std::vector<Reaction> reactions = model.reactions(multipliers);
     const double seconds = at.time * time_;
-    const Eigen::Matrix3d to_space = to_axes(seconds).transpose();
+    const Eigen::Matrix3d to_space = rotation_to_axes(seconds).transpose();
     const double unit = force_ * length_;
     add(model.energies(), unit, result.energy);
     add(at.done, unit, result.energy);
@@ -313,11 +313,12 @@ class MovingSpan {
 
   /// Prepares the initial state: satisfies the constraints, and sets initial velocities if the rod
   /// is in motion. @return the reason of a failure; empty on success
-  [[nodiscard]] std::string settle(SpanIntegrator& integrator, SpanDynamics& model,
-                                   const DynamicsOptions& options, SpanInstant& at) const {
+  [[nodiscard]] std::string prepare_initial_state(SpanIntegrator& integrator, SpanDynamics& model,
+                                                  const DynamicsOptions& options,
+                                                  SpanInstant& at) const {
     at.v = Eigen::VectorXd::Zero(model.size());
     std::string message = integrator.project(at);
-    if (message.empty() && model.has_twist()) message = integrator.settle_twist(at);
+    if (message.empty() && model.has_twist()) message = integrator.equilibrate_roll(at);
     if (!message.empty()) return message;
     if (options.velocities) {
       integrator.set_velocities(point_velocities(options.velocities, model), at);
@@ -343,13 +344,13 @@ class MovingSpan {
       span.principal_d1 = first_d1(start);
     }
     SpanDynamics model(span, options.terms, first, inertia(masses), contact);
-    const StartShape begin = start_at(field, model.nodes());
-    const bool leaves_at_once =
+    const StartShape begin = start_shape_at(field, model.nodes());
+    const bool starts_out_of_plane =
         begin.tangents.row(2).cwiseAbs().maxCoeff() > motion_plane_rounding ||
         (options.velocities &&
          point_velocities(options.velocities, model).col(2).cwiseAbs().maxCoeff() >
              motion_plane_rounding);
-    if (placed_.span.planar && leaves_at_once) {
+    if (placed_.span.planar && starts_out_of_plane) {
       result.left_plane = true;
       return result;
     }
@@ -366,15 +367,15 @@ class MovingSpan {
     SpanInstant at;
     at.time = begin_ / time_;
     at.x = model.fit(begin);
-    result.message = settle(integrator, model, options, at);
+    result.message = prepare_initial_state(integrator, model, options, at);
     const auto stopped = [&] { return !result.message.empty() || left_plane; };
     if (!stopped()) {
       result.frames.push_back(frame(integrator, model, at));
       if (model.depth() > contact.depth) result.message = "the rod begins within a rigid obstacle";
     }
-    const auto too_deep = [&] { return integrator.depth() > contact.depth; };
-    const auto expired = [&] { return deadline.passed() || left_plane || too_deep(); };
-    const std::vector<double> breaks = own_breaks();
+    const auto is_too_deep = [&] { return integrator.depth() > contact.depth; };
+    const auto expired = [&] { return deadline.passed() || left_plane || is_too_deep(); };
+    const std::vector<double> breaks = span_breaks();
     auto next_break = std::upper_bound(breaks.begin(), breaks.end(), at.time);
     for (const double seconds : times) {
       const double time = seconds / time_;
@@ -391,7 +392,7 @@ class MovingSpan {
     }
     result.left_plane = left_plane;
     take(integrator, result);
-    if (too_deep() && !deadline.passed()) {
+    if (is_too_deep() && !deadline.passed()) {
       result.message = "a rigid obstacle is struck too hard for the depth that contact may have";
     }
     result.status = result.message.empty() ? SolveStatus::converged

@@ -28,8 +28,8 @@ EnergyBalance SpanDynamics::energies() const {
   const Eigen::MatrixX3d along_span = position_ * drive_.turn;
   result.gravity = -gravity_.cwiseProduct(along_span).sum();
   result.load = -loads_.cwiseProduct(along_span).sum();
-  for (const Touch& touch : soft_touches_) result.obstacles += touch.kept;
-  for (const Touch& touch : touches_) result.obstacles += touch.kept;
+  for (const ContactPoint& touch : soft_contact_points_) result.obstacles += touch.kept;
+  for (const ContactPoint& touch : contact_points_) result.obstacles += touch.kept;
   return result;
 }
 
@@ -44,10 +44,10 @@ std::vector<Reaction> SpanDynamics::reactions(
   for (Eigen::Index point = 0; point < points_.points(); ++point) {
     add(position_.row(point).transpose(), forces_.row(point).transpose());
   }
-  for (const Touch& touch : touches_) add(touch.at, -touch.force());
-  for (std::size_t k = 0; k < held_.size(); ++k) {
+  for (const ContactPoint& touch : contact_points_) add(touch.at, -touch.force());
+  for (std::size_t k = 0; k < grip_points_.size(); ++k) {
     result[k + 1].force = multiplier_force(multipliers, k);
-    add(position_.row(held_[k]).transpose(), -result[k + 1].force);
+    add(position_.row(grip_points_[k]).transpose(), -result[k + 1].force);
   }
   // The clamp at the end is the last grip.
   const Eigen::Vector3d end_torque = -couples(multipliers).back();
@@ -63,8 +63,8 @@ EnergyBalance SpanDynamics::power(const std::vector<Reaction>& reactions) const 
   for (std::size_t k = 0; k < reactions.size(); ++k) {
     result.work += reactions[k].force.dot(drive_.grips[k].rate);
   }
-  for (const std::vector<Touch>* touches : {&soft_touches_, &touches_}) {
-    for (const Touch& touch : *touches) {
+  for (const std::vector<ContactPoint>* touches : {&soft_contact_points_, &contact_points_}) {
+    for (const ContactPoint& touch : *touches) {
       result.work += touch.force().dot(touch.velocity);
       result.lost += touch.lost;
     }

@@ -20,25 +20,25 @@ struct ContactLaw {
 };
 
 /// Position and velocity of an obstacle at one time, along SpanDrive's axes.
-struct BodyPlace {
+struct ObstaclePose {
   Eigen::Matrix3d turn = Eigen::Matrix3d::Identity();  ///< rotation from the frame of its Body
   Eigen::Vector3d origin = Eigen::Vector3d::Zero();    ///< origin of the Body's frame
   Eigen::Vector3d velocity = Eigen::Vector3d::Zero();  ///< velocity of the origin
   Eigen::Vector3d spin = Eigen::Vector3d::Zero();
 
-  [[nodiscard]] Eigen::Vector3d inside(const Eigen::Vector3d& at) const {
+  [[nodiscard]] Eigen::Vector3d to_body_axes(const Eigen::Vector3d& at) const {
     return turn.transpose() * (at - origin);
   }
 };
 
 /// A point of a span within an obstacle, and the contact force there.
-struct Touch {
+struct ContactPoint {
   std::size_t obstacle = 0;  ///< index in the problem
   Eigen::Vector3d at = Eigen::Vector3d::Zero();
   Eigen::Vector3d normal = Eigen::Vector3d::UnitY();   ///< unit, out of the obstacle
   Eigen::Vector3d velocity = Eigen::Vector3d::Zero();  ///< velocity of the obstacle at the point
   double depth = 0;                                    ///< > 0
-  std::size_t piece = 0;                               ///< element in a ContactGrid
+  std::size_t element = 0;                             ///< element in a ContactGrid
   Eigen::Index point = 0;                              ///< index of the point within the element
   double push = 0;                                     ///< force on the rod along the normal
   double kept = 0;                                     ///< stored energy
@@ -47,7 +47,7 @@ struct Touch {
   double by_rate = 0;  ///< derivative of the push by the depth's rate
 
   /// Sets the members up to `depth`.
-  Touch(const Span::Obstacle& of, const BodyPlace& place, const Eigen::Vector3d& where);
+  ContactPoint(const Span::Obstacle& of, const ObstaclePose& place, const Eigen::Vector3d& where);
   [[nodiscard]] Eigen::Vector3d force() const { return push * normal; }
 };
 
@@ -62,21 +62,23 @@ class ContactGrid {
   ContactGrid(const std::vector<Span::Obstacle>& obstacles, const PositionOperator& reach,
               const ContactLaw& law);
 
-  [[nodiscard]] bool empty() const { return pieces_.empty(); }
+  [[nodiscard]] bool empty() const { return elements_.empty(); }
   /// Returns the points of an element.
-  [[nodiscard]] const PointsReach& points(std::size_t piece) const { return pieces_[piece]; }
+  [[nodiscard]] const PointOperator& points(std::size_t element) const {
+    return elements_[element];
+  }
   /// Adds the points of an element that are within an obstacle.
   /// @param begin  position of the element's begin;  @param tangents  nodes x 3
-  void find(std::size_t piece, const Span::Obstacle& obstacle, const BodyPlace& place,
+  void find(std::size_t element, const Span::Obstacle& obstacle, const ObstaclePose& place,
             const Eigen::Vector3d& begin, const Eigen::MatrixX3d& tangents,
-            std::vector<Touch>& found) const;
+            std::vector<ContactPoint>& found) const;
   /// Sets the contact force, energy and derivatives. @param rate  rate of the depth
-  void resist(double rate, Touch& touch) const;
+  void set_contact_force(double rate, ContactPoint& touch) const;
 
  private:
   ContactLaw law_;
   std::vector<double> spacings_;
-  std::vector<PointsReach> pieces_;
+  std::vector<PointOperator> elements_;
 };
 
 }  // namespace dlo::energy_model

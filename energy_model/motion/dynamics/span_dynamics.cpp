@@ -15,9 +15,9 @@ namespace {
 /// EI)^(1/2) l. Torsional waves of a round rod cross it in about 2 d / l of that time. This value
 /// is smaller than for any real rod, so that twist is in equilibrium with an error of the order of
 /// its square.
-constexpr double twist_time = 1e-4;
+constexpr double twist_relaxation_time = 1e-4;
 
-Moving turning(const Eigen::Vector3d& director, const FrameSpins& spins) {
+VectorMotion rotating_vector(const Eigen::Vector3d& director, const FrameSpins& spins) {
   const Eigen::Vector3d rate = spins.end_velocity.cross(director);
   return {director, rate, spins.end_acceleration.cross(director) + spins.end_velocity.cross(rate)};
 }
@@ -29,7 +29,7 @@ SpanDynamics::SpanDynamics(Span span, int terms, const Eigen::Vector3d& first, S
     : span_(std::move(span)),
       terms_(terms),
       inertia_(std::move(inertia)),
-      nodes_(span_, pieces_of(span_), director_table(terms)),
+      nodes_(span_, elements_of(span_), director_table(terms)),
       points_(nodes_),
       grid_(span_.rigid_obstacles, nodes_, contact),
       axes_(span_.planar ? 2 : 3) {
@@ -37,41 +37,43 @@ SpanDynamics::SpanDynamics(Span span, int terms, const Eigen::Vector3d& first, S
   const Eigen::Vector3d tangent = span_.start_direction.value_or(first).normalized();
   start_frame_ = frame_along(tangent, span_.first_d1(tangent));
   const bool free_start = !span_.start_direction;
-  frames_.reset(nodes_.pieces(), terms_, start_frame_, free_start, span_.natural);
+  frames_.reset(nodes_.elements(), terms_, start_frame_, free_start, span_.natural);
   frames_.resize(state_);
   const Eigen::Index fields = span_.planar ? 1 : frames_.fields();
   elastic_ = Eigen::VectorXd::Ones(fields * frames_.columns());
   if (fields > 2) {
     twist_inertia_ = Eigen::VectorXd::Zero(elastic_.size());
-    twist_inertia_.tail(frames_.columns()).setConstant(twist_time * twist_time);
+    twist_inertia_.tail(frames_.columns())
+        .setConstant(twist_relaxation_time * twist_relaxation_time);
   }
   for (Eigen::Index f = 0; free_start && f < elastic_.size(); f += frames_.columns()) {
     elastic_[f] = 0;
   }
-  const std::vector<Piece>& pieces = nodes_.pieces();
-  const auto point_at = [&](double s) { return points_.begin(pieces_before(pieces, s)); };
+  const std::vector<Element>& elements = nodes_.elements();
+  const auto point_at = [&](double s) { return points_.begin(elements_before(elements, s)); };
   for (const Span::Hold& hold : span_.holds) {
-    held_.push_back(point_at(hold.at));
+    grip_points_.push_back(point_at(hold.at));
     signs_.push_back(nodes_.signs(hold.at));
   }
-  constraints_ = axes_ * std::ssize(held_);
+  constraints_ = axes_ * std::ssize(grip_points_);
   if (span_.end_direction) constraints_ += axes_ - 1;
   if (span_.twist) ++constraints_;
-  masses_ = points_.weighed(inertia_.per_length);
+  masses_ = points_.weights_with_density(inertia_.per_length);
   for (const PointMass& mass : inertia_.points) masses_[point_at(mass.at)] += mass.mass;
   gravity_.setZero(points_.points(), 3);
   Eigen::Index node = 0;
-  for (std::size_t e = 0; e < pieces.size(); ++e) {
-    const Piece& piece = pieces[e];
-    const double middle = piece.begin + piece.length / 2;
-    const Eigen::Vector3d mean = span_.weight_between(piece.begin, piece.end()) / piece.length;
+  for (std::size_t e = 0; e < elements.size(); ++e) {
+    const Element& element = elements[e];
+    const double middle = element.begin + element.length / 2;
+    const Eigen::Vector3d mean =
+        span_.weight_between(element.begin, element.end()) / element.length;
     // Line loads begin and end at element boundaries, and are linear on each element.
     Eigen::Vector3d slope = Eigen::Vector3d::Zero();
     for (const LineLoad& load : span_.line_loads) {
       if (load.begin < middle && middle < load.end) slope += load.slope();
     }
     const Eigen::Index begin = points_.begin(static_cast<Eigen::Index>(e));
-    for (Eigen::Index point = begin; point < begin + points_.piece_points(); ++point) {
+    for (Eigen::Index point = begin; point < begin + points_.element_points(); ++point) {
       const double weight = points_.weights()[point];
       // Begins and ends of elements are not quadrature nodes.
       if (!(weight > 0)) continue;
@@ -85,7 +87,7 @@ SpanDynamics::SpanDynamics(Span span, int terms, const Eigen::Vector3d& first, S
 }
 
 Eigen::VectorXd SpanDynamics::full(const Eigen::Ref<const Eigen::VectorXd>& part) const {
-  Eigen::VectorXd result = Eigen::VectorXd::Zero(all_unknowns());
+  Eigen::VectorXd result = Eigen::VectorXd::Zero(full_size());
   result.head(size()) = part;
   return result;
 }
@@ -103,26 +105,26 @@ void SpanDynamics::move(const SpanDrive& drive, const Eigen::Ref<const Eigen::Ve
   t_ = state_.t.bottomRows(nodes().size());
   t_rate_ = cross_rows(spins.velocities, t_);
   const Eigen::Matrix3d end = state_.end_frame();
-  end_d1_ = turning(end.col(0), spins);
-  end_tangent_ = turning(end.col(2), spins);
+  end_d1_ = rotating_vector(end.col(0), spins);
+  end_tangent_ = rotating_vector(end.col(2), spins);
   Eigen::MatrixXd tangents(t_.rows(), 9);
   tangents << t_, t_rate_,
       cross_rows(spins.accelerations, t_) + cross_rows(spins.velocities, t_rate_);
-  const Eigen::MatrixXd moved = points_.sums(tangents);
-  const Moving& anchor = drive.grips.front();
+  const Eigen::MatrixXd moved = points_.to_points(tangents);
+  const VectorMotion& anchor = drive.grips.front();
   position_ = moved.leftCols<3>().rowwise() + anchor.value.transpose();
   velocity_ = moved.middleCols<3>(3).rowwise() + anchor.rate.transpose();
   acceleration_ = moved.rightCols<3>().rowwise() + anchor.acceleration.transpose();
   forces_ = masses_.asDiagonal() * acceleration_;
   forces_ += (inertia_.drag * points_.weights()).asDiagonal() * velocity_;
-  drag_across();
+  add_quadratic_drag();
   forces_ -= (gravity_ + loads_) * drive.turn.transpose();
-  collect_soft_touches();
-  collect_touches();
+  collect_soft_contact_points();
+  collect_contact_points();
 }
 
 /// Adds quadratic drag to the forces. Begins and ends of elements have zero weight.
-void SpanDynamics::drag_across() {
+void SpanDynamics::add_quadratic_drag() {
   mean_drag_ = inertia_.drag;
   if (!(inertia_.quadratic_drag > 0)) return;
   quadratic_drag_.setZero(points_.points(), 3);
@@ -149,30 +151,31 @@ Eigen::Vector3d SpanDynamics::multiplier_force(const Eigen::Ref<const Eigen::Vec
 }
 
 /// Returns the derivatives of f by the unknowns.
-Eigen::VectorXd SpanDynamics::pulled(const FrameGradient& f) {
-  Eigen::VectorXd result = Eigen::VectorXd::Zero(all_unknowns());
+Eigen::VectorXd SpanDynamics::frame_adjoint(const FrameGradient& f) {
+  Eigen::VectorXd result = Eigen::VectorXd::Zero(full_size());
   frames_.add_adjoint(f, 1, state_, result);
   return result.head(size());
 }
 
 /// Returns the derivatives by the tangents of the work of all forces on the rod with these
 /// multipliers: the internal force required by them.
-Eigen::MatrixX3d SpanDynamics::all_by_tangents(
+Eigen::MatrixX3d SpanDynamics::work_gradient(
     const Eigen::Ref<const Eigen::VectorXd>& multipliers) const {
   Eigen::MatrixX3d forces = forces_;
-  for (std::size_t k = 0; k < held_.size(); ++k) {
-    forces.row(held_[k]) -= multiplier_force(multipliers, k).transpose();
+  for (std::size_t k = 0; k < grip_points_.size(); ++k) {
+    forces.row(grip_points_[k]) -= multiplier_force(multipliers, k).transpose();
   }
-  Eigen::MatrixX3d result = points_.spread(forces);
-  for (const Touch& touch : touches_) result -= at_tangents(touch, touch.force());
+  Eigen::MatrixX3d result = points_.to_nodes(forces);
+  for (const ContactPoint& touch : contact_points_)
+    result -= tangent_gradient(touch, touch.force());
   return result;
 }
 
 /// Returns the couples of the clamp at the end, per element.
 std::vector<Eigen::Vector3d> SpanDynamics::couples(
     const Eigen::Ref<const Eigen::VectorXd>& multipliers) const {
-  std::vector<Eigen::Vector3d> result(nodes_.pieces().size(), Eigen::Vector3d::Zero());
-  Eigen::Index row = axes_ * std::ssize(held_);
+  std::vector<Eigen::Vector3d> result(nodes_.elements().size(), Eigen::Vector3d::Zero());
+  Eigen::Index row = axes_ * std::ssize(grip_points_);
   for (const AcrossDirector& across : drive_.across_end) {
     result.back() -= multipliers[row++] * director(across).value.cross(across.direction.value);
   }
@@ -180,9 +183,9 @@ std::vector<Eigen::Vector3d> SpanDynamics::couples(
 }
 
 Eigen::VectorXd SpanDynamics::residual(const Eigen::Ref<const Eigen::VectorXd>& multipliers) {
-  const Eigen::MatrixX3d tangents = all_by_tangents(multipliers);
+  const Eigen::MatrixX3d tangents = work_gradient(multipliers);
   Eigen::VectorXd result = elastic_.cwiseProduct(x_ + inertia_.material_damping * v_) +
-                           pulled({&tangents, couples(multipliers)});
+                           frame_adjoint({&tangents, couples(multipliers)});
   if (has_twist()) result += twist_inertia_.cwiseProduct(a_);
   return result;
 }
@@ -191,49 +194,49 @@ Eigen::VectorXd SpanDynamics::residual(const Eigen::Ref<const Eigen::VectorXd>& 
 /// when the tangents rotate. The latter is nearly all of the stiffness of a thread under tension T,
 /// where bending has the fraction EI / (T l^2).
 Eigen::MatrixXd SpanDynamics::stiffness(const Eigen::Ref<const Eigen::VectorXd>& multipliers) {
-  const Eigen::MatrixX3d tangents = all_by_tangents(multipliers);
-  std::vector<Eigen::Matrix3d> curvatures(nodes_.pieces().size(), Eigen::Matrix3d::Zero());
-  Eigen::Index row = axes_ * std::ssize(held_);
+  const Eigen::MatrixX3d tangents = work_gradient(multipliers);
+  std::vector<Eigen::Matrix3d> curvatures(nodes_.elements().size(), Eigen::Matrix3d::Zero());
+  Eigen::Index row = axes_ * std::ssize(grip_points_);
   for (const AcrossDirector& across : drive_.across_end) {
     curvatures.back() -=
-        multipliers[row++] * spin_curvature(director(across).value, across.direction.value);
+        multipliers[row++] * spin_hessian(director(across).value, across.direction.value);
   }
-  Eigen::MatrixXd hessian = Eigen::MatrixXd::Zero(all_unknowns(), all_unknowns());
+  Eigen::MatrixXd hessian = Eigen::MatrixXd::Zero(full_size(), full_size());
   frame_hessian_.add(frames_, {&tangents, couples(multipliers)}, curvatures, state_, hessian);
   Eigen::MatrixXd result = hessian.topLeftCorner(size(), size());
   result.diagonal() += elastic_;
-  add_touches(&Touch::by_depth, result);
+  add_contact_derivatives(&ContactPoint::by_depth, result);
   return result;
 }
 
 Eigen::MatrixXd SpanDynamics::damping(const Eigen::MatrixXd& mass) {
   // Drag is proportional to the mass matrix if the mass per length is constant.
-  const double rod = points_.weighed(inertia_.per_length).sum();
+  const double rod = points_.weights_with_density(inertia_.per_length).sum();
   Eigen::MatrixXd result = (rod > 0 ? mean_drag_ * span_.length / rod : 0) * mass;
   result.diagonal() += inertia_.material_damping * elastic_;
-  add_touches(&Touch::by_rate, result);
+  add_contact_derivatives(&ContactPoint::by_rate, result);
   return result;
 }
 
 Eigen::VectorXd SpanDynamics::impulse(const Eigen::MatrixX3d& before) {
-  const Eigen::MatrixX3d tangents = points_.spread(masses_.asDiagonal() * (velocity_ - before));
-  return pulled({&tangents, {}});
+  const Eigen::MatrixX3d tangents = points_.to_nodes(masses_.asDiagonal() * (velocity_ - before));
+  return frame_adjoint({&tangents, {}});
 }
 
 Eigen::MatrixX3d SpanDynamics::constraint_residuals() const {
   Eigen::MatrixX3d result(constraints_, 3);
   Eigen::Index row = 0;
-  for (std::size_t k = 0; k < held_.size(); ++k) {
+  for (std::size_t k = 0; k < grip_points_.size(); ++k) {
     Eigen::Matrix3d miss;
-    miss.col(0) = position_.row(held_[k]).transpose() - drive_.grips[k + 1].value;
-    miss.col(1) = velocity_.row(held_[k]).transpose() - drive_.grips[k + 1].rate;
-    miss.col(2) = acceleration_.row(held_[k]).transpose() - drive_.grips[k + 1].acceleration;
+    miss.col(0) = position_.row(grip_points_[k]).transpose() - drive_.grips[k + 1].value;
+    miss.col(1) = velocity_.row(grip_points_[k]).transpose() - drive_.grips[k + 1].rate;
+    miss.col(2) = acceleration_.row(grip_points_[k]).transpose() - drive_.grips[k + 1].acceleration;
     result.middleRows(row, axes_) = miss.topRows(axes_);
     row += axes_;
   }
   for (const AcrossDirector& across : drive_.across_end) {
-    const Moving& e = across.direction;
-    const Moving& t = director(across);
+    const VectorMotion& e = across.direction;
+    const VectorMotion& t = director(across);
     result(row, 0) = e.value.dot(t.value);
     result(row, 1) = e.rate.dot(t.value) + e.value.dot(t.rate);
     result(row, 2) =
@@ -247,15 +250,15 @@ Eigen::MatrixXd SpanDynamics::jacobian() {
   Eigen::MatrixXd result(constraints_, size());
   Eigen::Index row = 0;
   for (const std::vector<double>& signs : signs_) {
-    Eigen::MatrixXd rows = Eigen::MatrixXd::Zero(3, all_unknowns());
+    Eigen::MatrixXd rows = Eigen::MatrixXd::Zero(3, full_size());
     frames_.position_jacobian(signs, state_, rows);
     result.middleRows(row, axes_) = rows.topLeftCorner(axes_, size());
     row += axes_;
   }
-  std::vector<Eigen::Vector3d> couples(nodes_.pieces().size(), Eigen::Vector3d::Zero());
+  std::vector<Eigen::Vector3d> couples(nodes_.elements().size(), Eigen::Vector3d::Zero());
   for (const AcrossDirector& across : drive_.across_end) {
     couples.back() = director(across).value.cross(across.direction.value);
-    result.row(row++) = pulled({nullptr, couples}).transpose();
+    result.row(row++) = frame_adjoint({nullptr, couples}).transpose();
   }
   return result;
 }
@@ -282,7 +285,7 @@ SpanShape SpanDynamics::shape(const Eigen::VectorXd& x) const {
   result.terms = terms_;
   result.planar = false;
   result.anchor = span_.anchor;
-  result.pieces = nodes_.pieces();
+  result.elements = nodes_.elements();
   result.start_frame = start_frame_;
   result.free_start = !span_.start_direction;
   result.strains = full(x);

@@ -15,7 +15,7 @@
 namespace dlo::energy_model {
 
 /// A vector and its first two time derivatives, as components along axes at one time.
-struct Moving {
+struct VectorMotion {
   Eigen::Vector3d value = Eigen::Vector3d::Zero();
   Eigen::Vector3d rate = Eigen::Vector3d::Zero();
   Eigen::Vector3d acceleration = Eigen::Vector3d::Zero();
@@ -23,7 +23,7 @@ struct Moving {
 
 /// A direction that rotates with the clamp at the end, and the director that stays normal to it.
 struct AcrossDirector {
-  Moving direction;
+  VectorMotion direction;
   bool of_d1 = false;  ///< the director is d1 instead of the tangent
 };
 
@@ -35,11 +35,11 @@ struct SpanDrive {
   Eigen::Vector3d spin = Eigen::Vector3d::Zero();       ///< angular velocity of the axes
   Eigen::Vector3d spin_rate = Eigen::Vector3d::Zero();  ///< angular acceleration of the axes
   /// Positions of the anchor and of Span::holds relative to the anchor's initial position.
-  std::vector<Moving> grips;
+  std::vector<VectorMotion> grips;
   /// Directions to which directors of the last cross-section stay normal, if a clamp holds it.
   std::vector<AcrossDirector> across_end;
   Eigen::Vector3d end_spin = Eigen::Vector3d::Zero();  ///< angular velocity of the clamp at the end
-  std::vector<BodyPlace> obstacles;                    ///< the problem's obstacles, by index
+  std::vector<ObstaclePose> obstacles;                 ///< the problem's obstacles, by index
 };
 
 /// Mass and damping of a span, in its own units.
@@ -61,11 +61,11 @@ void add(const EnergyBalance& of, double times, EnergyBalance& to);
 /// for all dx that move r. r' and r'' follow from x', x'' by the angular velocities of
 /// cross-sections (frame_spins()),
 ///     t' = omega x t,  t'' = alpha x t + omega x t'.
-/// Rates of vectors are relative to space. The points of a SpanReach carry the mass.
+/// Rates of vectors are relative to space. The points of a SpanPointOperator carry the mass.
 ///
 /// With material directors x includes the strains of twist. Point masses alone would give no
 /// inertia to twist that moves no point; twist therefore gets the inertia T^2 per strain energy, T
-/// = twist_time.
+/// = twist_relaxation_time.
 class SpanDynamics {
  public:
   /// @param span   with material directors: Span::twist prescribes the last cross-section's d1; a
@@ -124,23 +124,23 @@ class SpanDynamics {
   [[nodiscard]] SpanShape shape(const Eigen::VectorXd& x) const;
 
  private:
-  [[nodiscard]] Eigen::Index all_unknowns() const { return frames_.fields() * frames_.columns(); }
+  [[nodiscard]] Eigen::Index full_size() const { return frames_.fields() * frames_.columns(); }
   [[nodiscard]] Eigen::VectorXd full(const Eigen::Ref<const Eigen::VectorXd>& part) const;
   /// Returns the director that an AcrossDirector refers to.
-  [[nodiscard]] const Moving& director(const AcrossDirector& across) const {
+  [[nodiscard]] const VectorMotion& director(const AcrossDirector& across) const {
     return across.of_d1 ? end_d1_ : end_tangent_;
   }
-  void drag_across();
-  void collect_soft_touches();
-  void collect_touches();
-  [[nodiscard]] Eigen::MatrixX3d at_tangents(const Touch& touch,
-                                             const Eigen::Vector3d& force) const;
-  [[nodiscard]] Eigen::VectorXd pulled(const FrameGradient& f);
-  [[nodiscard]] Eigen::MatrixX3d all_by_tangents(
+  void add_quadratic_drag();
+  void collect_soft_contact_points();
+  void collect_contact_points();
+  [[nodiscard]] Eigen::MatrixX3d tangent_gradient(const ContactPoint& touch,
+                                                  const Eigen::Vector3d& force) const;
+  [[nodiscard]] Eigen::VectorXd frame_adjoint(const FrameGradient& f);
+  [[nodiscard]] Eigen::MatrixX3d work_gradient(
       const Eigen::Ref<const Eigen::VectorXd>& multipliers) const;
   [[nodiscard]] std::vector<Eigen::Vector3d> couples(
       const Eigen::Ref<const Eigen::VectorXd>& multipliers) const;
-  void add_touches(double Touch::*derivative, Eigen::MatrixXd& matrix);
+  void add_contact_derivatives(double ContactPoint::*derivative, Eigen::MatrixXd& matrix);
   [[nodiscard]] Eigen::Vector3d multiplier_force(
       const Eigen::Ref<const Eigen::VectorXd>& multipliers, std::size_t hold) const;
 
@@ -152,12 +152,12 @@ class SpanDynamics {
   RodFrames::State state_;
   FrameHessian frame_hessian_;
   PositionOperator nodes_;
-  SpanReach points_;
+  SpanPointOperator points_;
   ContactGrid grid_;
   Eigen::Index constraints_ = 0, axes_ = 3;
-  Eigen::VectorXd elastic_;         // one per unknown: 0 for a free start's rotation, else 1
-  Eigen::VectorXd twist_inertia_;   // by unknown; 0 except for twist; empty without twist
-  std::vector<Eigen::Index> held_;  // point of each grip beyond the first
+  Eigen::VectorXd elastic_;                // one per unknown: 0 for a free start's rotation, else 1
+  Eigen::VectorXd twist_inertia_;          // by unknown; 0 except for twist; empty without twist
+  std::vector<Eigen::Index> grip_points_;  // point of each grip beyond the first
   std::vector<std::vector<double>> signs_;  // PositionOperator::signs() of each of these grips
   // Quantities of the points; forces along the span's frame.
   Eigen::VectorXd masses_;
@@ -168,13 +168,13 @@ class SpanDynamics {
   Eigen::VectorXd x_, v_, a_;
   Eigen::MatrixX3d t_, t_rate_;                          // tangents at the nodes and their rates
   Eigen::MatrixX3d position_, velocity_, acceleration_;  // motion of the points in space
-  Moving end_tangent_, end_d1_;
+  VectorMotion end_tangent_, end_d1_;
   Eigen::MatrixX3d quadratic_drag_;  // forces on the points; empty if there is none
   double mean_drag_ = 0;             // drag plus the derivative of quadratic drag, per length
   // Forces of the points: inertia and drag minus loads and soft obstacles.
   Eigen::MatrixX3d forces_;
-  std::vector<Touch> soft_touches_;  // at the points; included in forces_
-  std::vector<Touch> touches_;       // at the grid's points
+  std::vector<ContactPoint> soft_contact_points_;  // at the points; included in forces_
+  std::vector<ContactPoint> contact_points_;       // at the grid's points
 };
 
 }  // namespace dlo::energy_model

@@ -11,21 +11,21 @@ namespace {
 constexpr int stage_count = 4;
 /// Newton's method ends when a correction is below this fraction of the step's tolerance, within
 /// absolute limits in rod lengths: its error must not cause a drift of energy.
-constexpr double newton_share = 1e-4;
-constexpr double newton_most = 1e-11;
-constexpr double newton_least = 1e-14;
+constexpr double newton_tolerance_share = 1e-4;
+constexpr double largest_newton_tolerance = 1e-11;
+constexpr double smallest_newton_tolerance = 1e-14;
 constexpr int most_newton_corrections = 40;
 /// Number of corrections above which the matrix is renewed for the next step.
-constexpr int slow = 8;
+constexpr int slow_convergence = 8;
 /// Shortest step, as a fraction of the time scale of the rod's slowest vibration; shorter ones
 /// count as a failure.
 constexpr double least_step = 1e-9;
 
 /// Interval around a break of the drive, at which the velocity jumps. A step that ends at the break
 /// uses the velocity before it; the step that begins there uses the velocity after it.
-double instant(double time) { return 1e-12 * std::max(1.0, std::abs(time)); }
-double just_before(double time) { return time - instant(time); }
-double just_after(double time) { return time + instant(time); }
+double break_interval(double time) { return 1e-12 * std::max(1.0, std::abs(time)); }
+double before_break(double time) { return time - break_interval(time); }
+double after_break(double time) { return time + break_interval(time); }
 
 /// Rounding error of a sum of energies, divided by the sum of their magnitudes: the errors of some
 /// hundred terms add up like a random walk. A heavy load on a soft rod has a potential of 1e6
@@ -40,26 +40,28 @@ SpanIntegrator::SpanIntegrator(SpanDynamics& span, std::function<SpanDrive(doubl
       drive_(std::move(drive)),
       options_(options),
       rule_(options.damped ? radau_rule() : gauss_rule()),
-      newton_enough_(std::clamp(newton_share * options_.tolerance, newton_least, newton_most)) {}
+      newton_tolerance_(std::clamp(newton_tolerance_share * options_.tolerance,
+                                   smallest_newton_tolerance, largest_newton_tolerance)) {}
 
 bool SpanIntegrator::same_instant(double a, double b) {
-  return std::abs(a - b) <= 2 * instant(std::max(std::abs(a), std::abs(b)));
+  return std::abs(a - b) <= 2 * break_interval(std::max(std::abs(a), std::abs(b)));
 }
 
-void SpanIntegrator::take_mass(double time, const SpanInstant& at) {
+void SpanIntegrator::update_mass_matrix(double time, const SpanInstant& at) {
   span_.move(drive_(time), at.x, at.v, Eigen::VectorXd::Zero(span_.size()));
   mass_ = span_.mass_matrix();
   jacobian_ = span_.jacobian();
 }
 
 /// Sets the rows of Newton's matrix that belong to one stage.
-void SpanIntegrator::place_point(Eigen::Index i, double step, const PointMatrices& at,
-                                 Eigen::MatrixXd& matrix) const {
+void SpanIntegrator::set_stage_rows(Eigen::Index i, double step, const PointMatrices& at,
+                                    Eigen::MatrixXd& matrix) const {
   const Eigen::Index n = at.mass.rows();
   const Eigen::Index m = at.jacobian.rows();
   for (Eigen::Index j = 0; j < stage_count; ++j) {
     auto block = matrix.block(i * (n + m), j * (n + m), n, n);
-    block = step * rule_.inner(i, j) * at.damping + step * step * rule_.twice(i, j) * at.stiffness;
+    block = step * rule_.inner(i, j) * at.damping +
+            step * step * rule_.double_integrals(i, j) * at.stiffness;
     if (i == j) block += at.mass;
   }
   matrix.block(i * (n + m), i * (n + m) + n, n, m) = -at.jacobian.transpose();
@@ -68,9 +70,9 @@ void SpanIntegrator::place_point(Eigen::Index i, double step, const PointMatrice
 
 SpanIntegrator::Factor& SpanIntegrator::factor(const SpanInstant& at, double step, bool renew) {
   // Steps that differ only by rounding of the times share a factor.
-  constexpr double same = 1e-9;
+  constexpr double tolerance = 1e-9;
   auto found = std::find_if(factors_.begin(), factors_.end(), [&](const Factor& known) {
-    return std::abs(known.step - step) <= same * step;
+    return std::abs(known.step - step) <= tolerance * step;
   });
   if (found == factors_.end()) {
     constexpr std::size_t most_factors = 6;
@@ -87,7 +89,7 @@ SpanIntegrator::Factor& SpanIntegrator::factor(const SpanInstant& at, double ste
   const Eigen::MatrixXd stiffness = span_.stiffness(multipliers);
   Eigen::MatrixXd matrix = Eigen::MatrixXd::Zero(stage_count * (n + m), stage_count * (n + m));
   for (Eigen::Index i = 0; i < stage_count; ++i) {
-    place_point(i, step, {mass_, damping, stiffness, jacobian_}, matrix);
+    set_stage_rows(i, step, {mass_, damping, stiffness, jacobian_}, matrix);
   }
   found->lu.compute(matrix);
   return *found;
@@ -96,7 +98,7 @@ SpanIntegrator::Factor& SpanIntegrator::factor(const SpanInstant& at, double ste
 /// Factors Newton's matrix with the mass, damping and stiffness matrices at each predicted stage. A
 /// roll of the frame that leaves the points in place has almost no mass, and mass matrices of other
 /// states would give it some.
-SpanIntegrator::Factor& SpanIntegrator::factor_of_points(const SpanInstant& at, double step,
+SpanIntegrator::Factor& SpanIntegrator::factor_at_stages(const SpanInstant& at, double step,
                                                          const std::vector<SpanDrive>& drives,
                                                          const Eigen::MatrixXd& guess) {
   const Eigen::Index n = span_.size();
@@ -107,14 +109,14 @@ SpanIntegrator::Factor& SpanIntegrator::factor_of_points(const SpanInstant& at, 
   for (Eigen::Index i = 0; i < stage_count; ++i) {
     span_.move(drives[static_cast<std::size_t>(i)], x.col(i), v.col(i), guess.col(i).head(n));
     mass_ = span_.mass_matrix();
-    place_point(
+    set_stage_rows(
         i, step,
         {mass_, span_.damping(mass_), span_.stiffness(guess.col(i).tail(m)), span_.jacobian()},
         matrix);
   }
-  of_points_.step = step;
-  of_points_.lu.compute(matrix);
-  return of_points_;
+  stage_factor_.step = step;
+  stage_factor_.lu.compute(matrix);
+  return stage_factor_;
 }
 
 /// Predicts the stages of a step by the polynomials of the previous one; zero if there is no
@@ -128,7 +130,7 @@ Eigen::MatrixXd SpanIntegrator::predicted(const SpanInstant& at, double step,
 }
 
 /// Interpolates the stages of one step from those of its two halves.
-Eigen::MatrixXd SpanIntegrator::joined(const Stages& first, const Stages& second) const {
+Eigen::MatrixXd SpanIntegrator::merge_halves(const Stages& first, const Stages& second) const {
   Eigen::MatrixXd result(first.values.rows(), stage_count);
   for (Eigen::Index i = 0; i < stage_count; ++i) {
     const double at = 2 * rule_.nodes[i];
@@ -147,12 +149,12 @@ bool SpanIntegrator::try_step(SpanInstant& at, double step, const Eigen::MatrixX
   for (Eigen::Index i = 0; i < stage_count; ++i) {
     // Radau's last stage is at the step's end, which may be a break.
     drives.push_back(
-        drive_(std::min(at.time + rule_.nodes[i] * step, just_before(at.time + step))));
+        drive_(std::min(at.time + rule_.nodes[i] * step, before_break(at.time + step))));
   }
   for (const bool renew : {false, true}) {
     Factor& newton =
         span_.has_twist()
-            ? factor_of_points(at, step, drives,
+            ? factor_at_stages(at, step, drives,
                                renew && found.values.allFinite() ? found.values : guess)
             : factor(at, step, renew);
     found.values = guess;
@@ -190,7 +192,7 @@ bool SpanIntegrator::try_step(SpanInstant& at, double step, const Eigen::MatrixX
         }
         found.step = step;
         found.end = at.time;
-        if (correction > slow) newton.step = -1;
+        if (correction > slow_convergence) newton.step = -1;
         return m == 0 || project(at).empty();
       }
       if (size > 2 * before && correction > 3) break;
@@ -202,15 +204,15 @@ bool SpanIntegrator::try_step(SpanInstant& at, double step, const Eigen::MatrixX
 
 std::string SpanIntegrator::project(SpanInstant& at) {
   if (span_.constraints() == 0) return {};
-  if (mass_.size() == 0) take_mass(at.time, at);
+  if (mass_.size() == 0) update_mass_matrix(at.time, at);
   // The identity limits displacements of unknowns with almost no mass.
   Eigen::MatrixXd weight = mass_;
   if (span_.has_twist()) weight.diagonal().array() += 1;
   const Eigen::LLT<Eigen::MatrixXd> mass(weight);
-  const SpanDrive drive = drive_(just_before(at.time));
+  const SpanDrive drive = drive_(before_break(at.time));
   const Eigen::VectorXd zero = Eigen::VectorXd::Zero(span_.size());
   constexpr int most_projections = 30;
-  constexpr double held = 1e-13;
+  constexpr double constraint_tolerance = 1e-13;
   double before = std::numeric_limits<double>::infinity();
   for (int i = 0; i < most_projections; ++i) {
     span_.move(drive, at.x, at.v, zero);
@@ -220,7 +222,8 @@ std::string SpanIntegrator::project(SpanInstant& at) {
     const Eigen::MatrixXd held_by = jacobian * yields;
     const Eigen::LDLT<Eigen::MatrixXd> solver(held_by);
     const double residual = residuals.col(0).norm();
-    if (residual < held || (residual >= before && residual < 1e3 * held)) {
+    if (residual < constraint_tolerance ||
+        (residual >= before && residual < 1e3 * constraint_tolerance)) {
       at.v -= yields * solver.solve(residuals.col(1));
       return {};
     }
@@ -234,13 +237,13 @@ std::string SpanIntegrator::project(SpanInstant& at) {
   return "the rod cannot reach its grips, or is straight between them";
 }
 
-std::string SpanIntegrator::settle_twist(SpanInstant& at) {
+std::string SpanIntegrator::equilibrate_roll(SpanInstant& at) {
   // Implicit Euler step from rest: unknowns with mass move by their acceleration times this.
   constexpr double squared_step = 1e-8;
   constexpr int most_settling = 50;
   const Eigen::Index n = span_.size();
   const Eigen::Index m = span_.constraints();
-  const SpanDrive drive = drive_(just_after(at.time));
+  const SpanDrive drive = drive_(after_break(at.time));
   const Eigen::VectorXd zero = Eigen::VectorXd::Zero(n);
   const Eigen::VectorXd begin = at.x;
   Eigen::VectorXd multipliers = Eigen::VectorXd::Zero(m);
@@ -259,7 +262,7 @@ std::string SpanIntegrator::settle_twist(SpanInstant& at) {
     if (!std::isfinite(size)) break;
     at.x -= change.head(n);
     multipliers -= change.tail(m);
-    if (size < newton_enough_ || (size >= before && size < 1e3 * newton_enough_)) return {};
+    if (size < newton_tolerance_ || (size >= before && size < 1e3 * newton_tolerance_)) return {};
     before = size;
   }
   return "no equilibrium of the twist was found at the start";
@@ -277,9 +280,9 @@ std::string SpanIntegrator::advance(SpanInstant& at, double until,
       last_.end = until;
       break;
     }
-    const double left = until - at.time;
-    const double count = std::ceil(left / (fixed ? options_.step : next_) * (1 - 1e-9));
-    const double step = left / count;
+    const double remaining = until - at.time;
+    const double count = std::ceil(remaining / (fixed ? options_.step : next_) * (1 - 1e-9));
+    const double step = remaining / count;
     if (!fixed && step < least_step && count > 1) {
       return "the time step became too small; increase the damping or change the number of terms";
     }
@@ -296,10 +299,10 @@ std::string SpanIntegrator::advance(SpanInstant& at, double until,
 bool SpanIntegrator::take_step(SpanInstant& at, double step) {
   smallest_step_ = std::min(smallest_step_, step);
   Stages next;
-  if (!try_step(at, step, predicted(at, step, last_), newton_enough_, next)) return false;
+  if (!try_step(at, step, predicted(at, step, last_), newton_tolerance_, next)) return false;
   last_ = std::move(next);
   if (span_.may_touch()) {
-    (void)take_energy(just_before(at.time), at);
+    (void)update_energy_range(before_break(at.time), at);
     depth_ = std::max(depth_, span_.depth());
   }
   return true;
@@ -309,23 +312,23 @@ bool SpanIntegrator::take_step(SpanInstant& at, double step) {
 /// step, and a result with a much smaller error. @return whether both results differ by less than
 /// the tolerance
 bool SpanIntegrator::take_two_halves(SpanInstant& at, double step) {
-  if (!std::isfinite(energy_)) energy_ = take_energy(just_after(at.time), at);
+  if (!std::isfinite(energy_)) energy_ = update_energy_range(after_break(at.time), at);
   SpanInstant once = at;
   SpanInstant twice = at;
   Stages first, second, whole;
   const bool solved =
-      try_step(twice, step / 2, predicted(at, step / 2, last_), newton_enough_, first) &&
-      try_step(twice, step / 2, predicted(twice, step / 2, first), newton_enough_, second) &&
-      try_step(once, step, joined(first, second), 1e-2 * options_.tolerance, whole);
+      try_step(twice, step / 2, predicted(at, step / 2, last_), newton_tolerance_, first) &&
+      try_step(twice, step / 2, predicted(twice, step / 2, first), newton_tolerance_, second) &&
+      try_step(once, step, merge_halves(first, second), 1e-2 * options_.tolerance, whole);
   if (!solved) {
     next_ = 0.3 * step;
     return false;
   }
   const Eigen::VectorXd change = once.x - twice.x;
-  const double apart = std::sqrt(std::max(0.0, change.dot(mass_ * change)));
-  const double energy = take_energy(just_before(twice.time), twice);
+  const double difference = std::sqrt(std::max(0.0, change.dot(mass_ * change)));
+  const double energy = update_energy_range(before_break(twice.time), twice);
   const double residual = std::abs(energy - energy_) - relative_energy_rounding * energy_magnitude_;
-  const double error = std::max(apart, residual / largest_energy_);
+  const double error = std::max(difference, residual / largest_energy_);
   constexpr double order = 2 * stage_count + 1;
   const double better = std::pow(options_.tolerance / std::max(error, 1e-300), 1 / order);
   const double grown = std::clamp(0.9 * better, 0.25, 2.0);
@@ -335,7 +338,7 @@ bool SpanIntegrator::take_two_halves(SpanInstant& at, double step) {
   }
   energy_ = energy;
   depth_ = std::max(depth_, span_.depth());
-  error_ += apart;
+  error_ += difference;
   smallest_step_ = std::min(smallest_step_, step / 2);
   at = std::move(twice);
   last_ = std::move(second);
@@ -345,7 +348,7 @@ bool SpanIntegrator::take_two_halves(SpanInstant& at, double step) {
 
 /// Returns the energy at an instant plus the energy dissipated and lost so far minus the work done,
 /// which is constant; updates the largest energies.
-double SpanIntegrator::take_energy(double time, const SpanInstant& at) {
+double SpanIntegrator::update_energy_range(double time, const SpanInstant& at) {
   span_.move(drive_(time), at.x, at.v, Eigen::VectorXd::Zero(span_.size()));
   const EnergyBalance energies = span_.energies();
   largest_energy_ = std::max({largest_energy_, energies.kinetic, energies.bending,
@@ -362,26 +365,26 @@ void SpanIntegrator::apply_impulse(SpanInstant& at) {
   energy_ = std::numeric_limits<double>::quiet_NaN();
   next_ = first_step;
   const Eigen::VectorXd zero = Eigen::VectorXd::Zero(span_.size());
-  span_.move(drive_(just_before(at.time)), at.x, at.v, zero);
+  span_.move(drive_(before_break(at.time)), at.x, at.v, zero);
   const Eigen::MatrixX3d before = span_.velocities();
   const double kinetic = span_.energies().kinetic;
-  at.v += accelerated(just_after(at.time), at, &before).head(span_.size());
-  span_.move(drive_(just_after(at.time)), at.x, at.v, zero);
+  at.v += solve_accelerations(after_break(at.time), at, &before).head(span_.size());
+  span_.move(drive_(after_break(at.time)), at.x, at.v, zero);
   at.done.work += span_.energies().kinetic - kinetic;
 }
 
 void SpanIntegrator::set_velocities(const Eigen::MatrixX3d& given, SpanInstant& at) {
   at.v = Eigen::VectorXd::Zero(span_.size());
-  at.v = accelerated(just_after(at.time), at, &given).head(span_.size());
+  at.v = solve_accelerations(after_break(at.time), at, &given).head(span_.size());
 }
 
 /// Returns accelerations and multipliers that satisfy the equations of motion; with the velocities
 /// before an impact, the change of v and the impulses of the grips.
-Eigen::VectorXd SpanIntegrator::accelerated(double time, const SpanInstant& at,
-                                            const Eigen::MatrixX3d* before) {
+Eigen::VectorXd SpanIntegrator::solve_accelerations(double time, const SpanInstant& at,
+                                                    const Eigen::MatrixX3d* before) {
   const Eigen::Index n = span_.size();
   const Eigen::Index m = span_.constraints();
-  take_mass(time, at);
+  update_mass_matrix(time, at);
   Eigen::MatrixXd matrix = Eigen::MatrixXd::Zero(n + m, n + m);
   matrix.topLeftCorner(n, n) = mass_;
   matrix.topRightCorner(n, m) = -jacobian_.transpose();
@@ -394,8 +397,8 @@ Eigen::VectorXd SpanIntegrator::accelerated(double time, const SpanInstant& at,
 }
 
 Eigen::VectorXd SpanIntegrator::consistent_accelerations(const SpanInstant& at) {
-  const double time = just_after(at.time);
-  const Eigen::VectorXd found = accelerated(time, at, nullptr);
+  const double time = after_break(at.time);
+  const Eigen::VectorXd found = solve_accelerations(time, at, nullptr);
   span_.move(drive_(time), at.x, at.v, found.head(span_.size()));
   return found.tail(span_.constraints());
 }

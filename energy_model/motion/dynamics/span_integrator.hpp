@@ -14,12 +14,12 @@ namespace dlo::energy_model {
 
 /// A collocation Runge-Kutta method.
 struct CollocationRule {
-  Eigen::VectorXd nodes;    ///< c, in (0, 1]
-  Eigen::VectorXd weights;  ///< b
-  Eigen::MatrixXd inner;    ///< a_ij: integrals of the stages to c_i
-  Eigen::MatrixXd twice;    ///< a a: double integrals of the stages to c_i
-  Eigen::MatrixXd through;  ///< stages to coefficients of Legendre's polynomials
-  Eigen::RowVectorXd last;  ///< b a: stages to the double integral over the step
+  Eigen::VectorXd nodes;             ///< c, in (0, 1]
+  Eigen::VectorXd weights;           ///< b
+  Eigen::MatrixXd inner;             ///< a_ij: integrals of the stages to c_i
+  Eigen::MatrixXd double_integrals;  ///< a a: double integrals of the stages to c_i
+  Eigen::MatrixXd to_legendre;       ///< stages to coefficients of Legendre's polynomials
+  Eigen::RowVectorXd last;           ///< b a: stages to the double integral over the step
 
   /// Returns the weights of the stages in their interpolating polynomial at a time within the step,
   /// given as a fraction of the step.
@@ -67,7 +67,7 @@ class SpanIntegrator {
   [[nodiscard]] std::string project(SpanInstant& at);
   /// Brings the roll of frames about points at rest, which has no mass, to its equilibrium at the
   /// begin. @return the reason of a failure; empty on success
-  [[nodiscard]] std::string settle_twist(SpanInstant& at);
+  [[nodiscard]] std::string equilibrate_roll(SpanInstant& at);
   /// Integrates to a time. @param expired  called before each step. @return the reason of a
   /// failure; empty on success
   [[nodiscard]] std::string advance(SpanInstant& at, double until,
@@ -119,21 +119,21 @@ class SpanIntegrator {
 
   [[nodiscard]] Eigen::MatrixXd predicted(const SpanInstant& at, double step,
                                           const Stages& known) const;
-  [[nodiscard]] Eigen::MatrixXd joined(const Stages& first, const Stages& second) const;
+  [[nodiscard]] Eigen::MatrixXd merge_halves(const Stages& first, const Stages& second) const;
   [[nodiscard]] bool try_step(SpanInstant& at, double step, const Eigen::MatrixXd& guess,
                               double enough, Stages& found);
   [[nodiscard]] bool take_step(SpanInstant& at, double step);
   [[nodiscard]] bool take_two_halves(SpanInstant& at, double step);
-  void place_point(Eigen::Index i, double step, const PointMatrices& at,
-                   Eigen::MatrixXd& matrix) const;
+  void set_stage_rows(Eigen::Index i, double step, const PointMatrices& at,
+                      Eigen::MatrixXd& matrix) const;
   [[nodiscard]] Factor& factor(const SpanInstant& at, double step, bool renew);
-  [[nodiscard]] Factor& factor_of_points(const SpanInstant& at, double step,
+  [[nodiscard]] Factor& factor_at_stages(const SpanInstant& at, double step,
                                          const std::vector<SpanDrive>& drives,
                                          const Eigen::MatrixXd& guess);
-  void take_mass(double time, const SpanInstant& at);
-  [[nodiscard]] double take_energy(double time, const SpanInstant& at);
-  [[nodiscard]] Eigen::VectorXd accelerated(double time, const SpanInstant& at,
-                                            const Eigen::MatrixX3d* before);
+  void update_mass_matrix(double time, const SpanInstant& at);
+  [[nodiscard]] double update_energy_range(double time, const SpanInstant& at);
+  [[nodiscard]] Eigen::VectorXd solve_accelerations(double time, const SpanInstant& at,
+                                                    const Eigen::MatrixX3d* before);
 
   SpanDynamics& span_;
   std::function<SpanDrive(double)> drive_;
@@ -142,9 +142,9 @@ class SpanIntegrator {
   Eigen::MatrixXd mass_;
   Eigen::MatrixXd jacobian_;
   std::vector<Factor> factors_;
-  Factor of_points_;  // factor of Newton's matrix with the mass matrices of the last step
+  Factor stage_factor_;  // factor of Newton's matrix with the mass matrices of the last step
   Stages last_;
-  double newton_enough_;      // Newton correction at which a step counts as solved
+  double newton_tolerance_;   // Newton correction at which a step counts as solved
   double next_ = first_step;  // size of the next step
   double energy_ = std::numeric_limits<double>::quiet_NaN();  // at the end of the last step
   double largest_energy_ = 0;

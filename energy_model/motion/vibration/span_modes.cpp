@@ -13,7 +13,7 @@ namespace {
 
 /// Returns an orthonormal basis of the null space of the constraints' Jacobian. Some constraints
 /// may vanish to first order: the end of a straight rod cannot move along it.
-Eigen::MatrixXd directions_left(const Eigen::MatrixXd& jacobian) {
+Eigen::MatrixXd null_space_basis(const Eigen::MatrixXd& jacobian) {
   if (jacobian.rows() == 0) return Eigen::MatrixXd::Identity(jacobian.cols(), jacobian.cols());
   constexpr double of_first_order = 1e-9;
   Eigen::ColPivHouseholderQR<Eigen::MatrixXd> qr;
@@ -25,13 +25,13 @@ Eigen::MatrixXd directions_left(const Eigen::MatrixXd& jacobian) {
 
 /// Separates modes of equal frequency, which are determined only up to a rotation, by their
 /// movement along the axis.
-void separate(SpanModes& modes, const Eigen::MatrixXd& outside) {
-  constexpr double same = 1e-7;
+void separate_equal_frequencies(SpanModes& modes, const Eigen::MatrixXd& outside) {
+  constexpr double tolerance = 1e-7;
   const Eigen::Index count = modes.lambdas.size();
   for (Eigen::Index begin = 0; begin < count;) {
     Eigen::Index end = begin + 1;
     while (end < count &&
-           modes.lambdas[end] - modes.lambdas[begin] <= same * std::abs(modes.lambdas[end])) {
+           modes.lambdas[end] - modes.lambdas[begin] <= tolerance * std::abs(modes.lambdas[end])) {
       ++end;
     }
     if (end - begin > 1) {
@@ -49,7 +49,7 @@ void separate(SpanModes& modes, const Eigen::MatrixXd& outside) {
 SpanModes span_modes(const Eigen::MatrixXd& hessian, const Eigen::MatrixXd& jacobian,
                      const Eigen::MatrixXd& mass, const Eigen::MatrixXd& outside,
                      Eigen::Index count) {
-  const Eigen::MatrixXd free = directions_left(jacobian);
+  const Eigen::MatrixXd free = null_space_basis(jacobian);
   const Eigen::MatrixXd stiffness = free.transpose() * hessian * free;
   const Eigen::MatrixXd free_mass = free.transpose() * mass * free;
   // 1 / (lambda + shift) are the eigenvalues of M with respect to H + shift M, which has to be
@@ -82,7 +82,7 @@ SpanModes span_modes(const Eigen::MatrixXd& hessian, const Eigen::MatrixXd& jaco
   for (Eigen::Index k = 0; k < found; ++k) {
     modes.shapes.col(k) *= std::sqrt(modes.lambdas[k] + shift);
   }
-  separate(modes, outside);
+  separate_equal_frequencies(modes, outside);
   modes.outside = (modes.shapes.transpose() * outside * modes.shapes).diagonal();
   return modes;
 }
@@ -98,22 +98,23 @@ double total_mass(const Problem& problem, const Inertia& inertia) {
 }
 
 std::vector<double> masses_per_length(const Problem& problem, const Inertia& inertia,
-                                      const PlacedSpan& placed, const std::vector<Piece>& pieces) {
-  std::vector<double> result(pieces.size(), inertia.mass_per_length * problem.length);
+                                      const PlacedSpan& placed,
+                                      const std::vector<Element>& elements) {
+  std::vector<double> result(elements.size(), inertia.mass_per_length * problem.length);
   for (std::size_t i = 0; i < problem.sections.size(); ++i) {
     const double begin = placed.s_of(problem.sections[i].begin, problem.length);
     const double end = placed.s_of(problem.sections[i].end, problem.length);
-    for (std::size_t e = 0; e < pieces.size(); ++e) {
-      const double middle = pieces[e].begin + pieces[e].length / 2;
+    for (std::size_t e = 0; e < elements.size(); ++e) {
+      const double middle = elements[e].begin + elements[e].length / 2;
       if ((begin < middle) == (middle < end)) result[e] = inertia.of_sections[i] * problem.length;
     }
   }
   return result;
 }
 
-Eigen::MatrixXd mass_matrix(const SpanReach& reach, const Eigen::VectorXd& masses,
+Eigen::MatrixXd mass_matrix(const SpanPointOperator& reach, const Eigen::VectorXd& masses,
                             const Eigen::MatrixXd& tangents) {
-  const Eigen::MatrixXd moved = masses.cwiseSqrt().asDiagonal() * reach.sums(tangents);
+  const Eigen::MatrixXd moved = masses.cwiseSqrt().asDiagonal() * reach.to_points(tangents);
   return moved.transpose() * moved;
 }
 

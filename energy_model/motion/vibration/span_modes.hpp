@@ -38,14 +38,15 @@ void check(const Problem& problem, const Inertia& inertia, std::string_view func
 /// [kg].
 [[nodiscard]] std::vector<double> masses_per_length(const Problem& problem, const Inertia& inertia,
                                                     const PlacedSpan& placed,
-                                                    const std::vector<Piece>& pieces);
+                                                    const std::vector<Element>& elements);
 
 /// Returns the mass matrix M of the movement along one axis: the kinetic energy is v^T M v / 2 with
 /// the unknowns' velocities v.
 /// @param masses    of the points of a span
 /// @param tangents  derivatives of the tangents' component along the axis by the unknowns, nodes x
 ///   unknowns
-[[nodiscard]] Eigen::MatrixXd mass_matrix(const SpanReach& reach, const Eigen::VectorXd& masses,
+[[nodiscard]] Eigen::MatrixXd mass_matrix(const SpanPointOperator& reach,
+                                          const Eigen::VectorXd& masses,
                                           const Eigen::MatrixXd& tangents);
 
 }  // namespace dlo::energy_model

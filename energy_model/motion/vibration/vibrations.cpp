@@ -34,7 +34,7 @@ constexpr double plane_rounding = 1e-9;
 constexpr double same_tangents = 1e-6;
 /// Value of omega_squared, divided by EI / (m l^3), below which errors are no longer relative:
 /// smaller values belong to rigid-body modes and rounding.
-constexpr double neutral_share = 1e-2;
+constexpr double zero_frequency_threshold = 1e-2;
 
 /// Function that returns the spans of a rod in equilibrium with a number of coefficients, all in
 /// space.
@@ -95,7 +95,7 @@ class RodVibrations {
   /// Solves for the spans and their modes. @return the reason of a failure; empty on success
   [[nodiscard]] std::string find(int terms) {
     spans_.clear();
-    farthest_ = 0;
+    largest_tangent_difference_ = 0;
     for (PlacedSolution& found : spans_at_rest_(terms, workspace_)) {
       SpanSolution& solution = found.solution;
       if (!solution.is_equilibrium() && solution.status != SolveStatus::near_singular) {
@@ -125,7 +125,9 @@ class RodVibrations {
 
   /// Whether the vibrating shape is the known one: Newton's method may have converged to another
   /// one, and few coefficients do not resolve it.
-  [[nodiscard]] bool is_known() const { return farthest_ <= same_tangents; }
+  [[nodiscard]] bool matches_known_shape() const {
+    return largest_tangent_difference_ <= same_tangents;
+  }
 
   /// Number of unknowns of the largest span.
   [[nodiscard]] Eigen::Index unknowns() const {
@@ -142,14 +144,15 @@ class RodVibrations {
     if (known_ != nullptr) {
       const Eigen::Matrix3Xd known =
           field_of(*known_, placed, problem_.length)(model->nodes()).tangents;
-      farthest_ = std::max(farthest_, (known - at->tangents()).cwiseAbs().maxCoeff());
+      largest_tangent_difference_ =
+          std::max(largest_tangent_difference_, (known - at->tangents()).cwiseAbs().maxCoeff());
     }
     Eigen::MatrixXd hessian;
     model->hessian(*at, found.solution.multipliers, hessian);
     const ShapeAxes axes = shape_axes(at->tangents());
     auto span = std::make_shared<VibratingSpan>(
         VibratingSpan{placed,
-                      PositionOperator(model->span(), pieces_of(model->span()), model->table()),
+                      PositionOperator(model->span(), elements_of(model->span()), model->table()),
                       model->tangent_jacobian(*at),
                       {},
                       axes.flat});
@@ -159,9 +162,9 @@ class RodVibrations {
       tangents.conservativeResize(Eigen::NoChange, model->size());
       tangents.rightCols(model->size() - moving).setZero();
     }
-    const SpanReach points(span->reach);
-    const Eigen::VectorXd masses =
-        points.weighed(masses_per_length(problem_, inertia_, placed, span->reach.pieces()));
+    const SpanPointOperator points(span->reach);
+    const Eigen::VectorXd masses = points.weights_with_density(
+        masses_per_length(problem_, inertia_, placed, span->reach.elements()));
     const auto mass_along = [&](const Eigen::MatrixXd& tangents) {
       Eigen::MatrixXd result = mass_matrix(points, masses, tangents);
       for (const PointMass& point : inertia_.point_masses) {
@@ -232,7 +235,8 @@ class RodVibrations {
   Eigen::Index count_;
   SpanWorkspace workspace_;
   std::vector<std::shared_ptr<const VibratingSpan>> spans_;
-  double farthest_ = 0;  // largest difference of a tangent's component from the known shape
+  double largest_tangent_difference_ =
+      0;  // largest difference of a tangent's component from the known shape
 };
 
 void check_options(const VibrationOptions& options) {
@@ -265,7 +269,7 @@ void require_energy_in_space(const Problem& problem) {
 }
 
 /// Checks that nothing bends or twists the rod. @throws std::invalid_argument otherwise
-void require_nothing_bends(const Problem& problem) {
+void require_no_bending_loads(const Problem& problem) {
   const char* where = "taut_vibrations";
   double weight = 0;
   for (const RodPart& part : rod_parts(problem)) {
@@ -292,7 +296,7 @@ Vibrations resolved_vibrations(const Problem& problem, const Inertia& inertia,
   result.status = SolveStatus::failed;
   int terms = std::max(16, options.count + 8);
   std::vector<double> last;
-  const double neutral_square = neutral_share * bending_unit(problem) /
+  const double neutral_square = zero_frequency_threshold * bending_unit(problem) /
                                 (total_mass(problem, inertia) * std::pow(problem.length, 3));
   while (true) {
     const std::string problem_found = rod.find(terms);
@@ -311,7 +315,7 @@ Vibrations resolved_vibrations(const Problem& problem, const Inertia& inertia,
           std::abs(square - last[i]) / (2 * std::max(std::abs(square), neutral_square));
       largest = std::max(largest, result.modes[i].error);
     }
-    if (as_many && largest <= options.tolerance && rod.is_known()) {
+    if (as_many && largest <= options.tolerance && rod.matches_known_shape()) {
       result.status = SolveStatus::converged;
       result.message = to_string(result.status);
       return result;
@@ -323,7 +327,7 @@ Vibrations resolved_vibrations(const Problem& problem, const Inertia& inertia,
     terms = next;
   }
   result.status = SolveStatus::not_verified;
-  result.message = rod.is_known()
+  result.message = rod.matches_known_shape()
                        ? "the lowest frequencies still change with the number of terms"
                        : "the equilibrium was not found with the number of terms of the modes";
   return result;
@@ -381,7 +385,7 @@ Vibrations taut_vibrations(const Problem& problem, const Inertia& inertia, doubl
   check_options(options);
   require_finite(where, "tension", tension);
   require_energy_in_space(problem);
-  require_nothing_bends(problem);
+  require_no_bending_loads(problem);
   if (!is_held_straight(problem)) {
     throw std::invalid_argument(std::string(where) +
                                 ": clamps do not hold the rod straight along its whole length");

@@ -31,10 +31,10 @@ constexpr double nearly_at_rest = 0.05;  // spin below which multipliers are upd
 constexpr double least_shift = 1e-4;
 constexpr double longest_turn = 0.5;  // largest spin of a frame in a step [rad]
 // Share of the predicted decrease that a step has to reach (Armijo).
-constexpr double sufficient = 1e-4;
+constexpr double armijo_share = 1e-4;
 constexpr double energy_rounding = 1e-13;  // relative rounding error of an energy
 // The penalty of a gap grows unless a round reduces the gap to this share.
-constexpr double closing = 0.25;
+constexpr double required_gap_reduction = 0.25;
 constexpr double penalty_growth = 4;      // increase of a penalty in a round, as a factor
 constexpr double largest_penalty = 1e12;  // largest penalty divided by the initial one
 
@@ -100,13 +100,13 @@ class DiscreteRod {
         span_(span),
         mesh_(mesh),
         joints_(frame_joints(span, mesh)),
-        carried_(carried_force(span, mesh).on_interval),
+        carried_force_(internal_force(span, mesh).on_interval),
         q_(start) {
     if (motion == Motion::in_plane) normal_ = span.plane->x.cross(span.plane->y);
     const std::vector<double> turns = adjacent_interval_turns(span, mesh, start);
     for (std::size_t k = 0; k < turns.size(); ++k) q_.push_back(clamp_frame(span, k, turns[k]));
     number_unknowns();
-    disturb();
+    perturb_frames();
     for (GripGap& of : gaps) fit_multiplier(of);
   }
 
@@ -122,7 +122,7 @@ class DiscreteRod {
       energy += joint_energy(joint, frame(joint.left), frame(joint.right));
     }
     for (Eigen::Index i = 0; i < mesh_.intervals(); ++i) {
-      energy -= mesh_.width(i) * carried_.col(i).dot(tangent(i));
+      energy -= mesh_.width(i) * carried_force_.col(i).dot(tangent(i));
     }
     return energy;
   }
@@ -148,7 +148,7 @@ class DiscreteRod {
   [[nodiscard]] RodModel model() const {
     const Eigen::Index frames = std::ssize(q_);
     RodModel model{std::vector<SpinBasis>(q_.size()),
-                   Eigen::MatrixXd::Zero(std::min(2 * widest_, unknowns_), unknowns_),
+                   Eigen::MatrixXd::Zero(std::min(2 * most_frame_unknowns_, unknowns_), unknowns_),
                    Eigen::MatrixXd::Zero(unknowns_, 3 * std::ssize(gaps)),
                    Eigen::VectorXd(unknowns_), Eigen::VectorXd(unknowns_)};
     for (Eigen::Index f = 0; f < frames; ++f) model.bases[static_cast<std::size_t>(f)] = basis(f);
@@ -177,7 +177,7 @@ class DiscreteRod {
     for (Eigen::Index f = 0; f < frames; ++f) {
       const double h = mesh_.width(std::min(f, mesh_.intervals() - 1));
       Eigen::Matrix3d& own = diagonal[static_cast<std::size_t>(f)];
-      if (f < mesh_.intervals()) own -= h * spin_curvature(tangent(f), n.col(f));
+      if (f < mesh_.intervals()) own -= h * spin_hessian(tangent(f), n.col(f));
       add(f, f, own);
       const Eigen::Vector3d descent = -basis_of(f).axes.transpose() * g.col(f);
       model.descent.segment(first_of(f), basis_of(f).size) = descent.head(basis_of(f).size);
@@ -261,7 +261,7 @@ class DiscreteRod {
     first_.resize(q_.size());
     const auto number = [&](Eigen::Index f) {
       first_[static_cast<std::size_t>(f)] = unknowns_;
-      widest_ = std::max(widest_, basis(f).size);
+      most_frame_unknowns_ = std::max(most_frame_unknowns_, basis(f).size);
       unknowns_ += basis(f).size;
     };
     for (Eigen::Index i = 0; i <= mesh_.intervals(); ++i) {
@@ -272,7 +272,7 @@ class DiscreteRod {
   }
 
   /// Rotates the frames a little, so that no symmetry keeps the rod at a saddle.
-  void disturb() {
+  void perturb_frames() {
     constexpr double amplitude = 1e-3;  // [rad]
     Eigen::Matrix3Xd spins = Eigen::Matrix3Xd::Zero(3, std::ssize(q_));
     for (Eigen::Index i = 0; i < mesh_.intervals(); ++i) {
@@ -286,11 +286,11 @@ class DiscreteRod {
   /// Returns the carried force including the contribution of the grips.
   /// @param with_penalties  whether gaps contribute in proportion to their penalties too
   [[nodiscard]] Eigen::Matrix3Xd force(bool with_penalties) const {
-    Eigen::Matrix3Xd force = carried_;
+    Eigen::Matrix3Xd force = carried_force_;
     for (const GripGap& of : gaps) {
-      Eigen::Vector3d held = of.multiplier;
-      if (with_penalties) held += of.penalty * gap(of);
-      force.middleCols(of.first, of.end - of.first).colwise() -= held;
+      Eigen::Vector3d multiplier = of.multiplier;
+      if (with_penalties) multiplier += of.penalty * gap(of);
+      force.middleCols(of.first, of.end - of.first).colwise() -= multiplier;
     }
     return force;
   }
@@ -320,7 +320,7 @@ class DiscreteRod {
 
   /// Sets the multiplier that balances the intervals between two grips best.
   void fit_multiplier(GripGap& of) const {
-    const Eigen::Matrix3Xd without = gradient(derivatives(), carried_);
+    const Eigen::Matrix3Xd without = gradient(derivatives(), carried_force_);
     Eigen::Matrix3d matrix = Eigen::Matrix3d::Zero();
     Eigen::Vector3d right = Eigen::Vector3d::Zero();
     for (Eigen::Index i = of.first; i < of.end; ++i) {
@@ -334,17 +334,17 @@ class DiscreteRod {
   const RodSpan& span_;
   const RodMesh& mesh_;
   std::vector<FrameJoint> joints_;
-  Eigen::Matrix3Xd carried_;
+  Eigen::Matrix3Xd carried_force_;
   std::vector<Quaterniond> q_;             // frames of the intervals, then of the clamps
   std::optional<Eigen::Vector3d> normal_;  // normal of the plane to which the motion is restricted
   std::vector<Eigen::Index> first_;        // first unknown of each frame
   Eigen::Index unknowns_ = 0;
-  Eigen::Index widest_ = 0;  // largest number of unknowns of a frame
+  Eigen::Index most_frame_unknowns_ = 0;  // largest number of unknowns of a frame
 };
 
 /// Takes a Newton step with a shift for which the Hessian is positive definite, halved until the
 /// augmented energy decreases, and adapts the shift. Returns std::nullopt if no shift suffices.
-std::optional<RodStep> descend_once(DiscreteRod& rod, double unit, double& shift) {
+std::optional<RodStep> damped_newton_step(DiscreteRod& rod, double unit, double& shift) {
   const RodModel model = rod.model();
   std::optional<RodStep> step = rod.newton_step(model, shift);
   for (int k = 0; k < most_shifts && !step; ++k) {
@@ -358,8 +358,8 @@ std::optional<RodStep> descend_once(DiscreteRod& rod, double unit, double& shift
   int halvings = 0;
   for (; halvings < most_halvings; ++halvings, share /= 2) {
     rod.turn(from, share * step->spins);
-    const double promised = before + sufficient * share * step->slope;
-    if (rod.augmented_energy() <= promised + energy_rounding * (1 + std::abs(before))) break;
+    const double allowed_energy = before + armijo_share * share * step->slope;
+    if (rod.augmented_energy() <= allowed_energy + energy_rounding * (1 + std::abs(before))) break;
   }
   constexpr int usual_halvings = 2;
   shift = halvings > usual_halvings ? std::max(4 * shift, unit)
@@ -379,7 +379,7 @@ RelaxedPolygon relax_polygon(const RodSpan& span, const RodMesh& mesh,
   for (const GripGap& of : rod.gaps) largest.push_back(largest_penalty * of.penalty);
   double shift = least_shift * unit;
   for (int k = 0; k < most_steps && !deadline.passed(); ++k) {
-    const std::optional<RodStep> step = descend_once(rod, unit, shift);
+    const std::optional<RodStep> step = damped_newton_step(rod, unit, shift);
     if (!step) break;
     // Steps with a shift are short, even far from the minimum.
     if (step->largest > nearly_at_rest || shift > unit) continue;
@@ -393,7 +393,7 @@ RelaxedPolygon relax_polygon(const RodSpan& span, const RodMesh& mesh,
       const double bent = step->largest * step->largest * span.length;
       if (step->largest > at_rest && open.norm() < bent) continue;
       of.multiplier += of.penalty * open;
-      if (open.norm() > closing * last_open[i]) {
+      if (open.norm() > required_gap_reduction * last_open[i]) {
         of.penalty = std::min(penalty_growth * of.penalty, largest[i]);
       }
       last_open[i] = open.norm();

@@ -52,8 +52,8 @@ std::vector<double> adjacent_interval_turns(const RodSpan& span, const RodMesh& 
   std::vector<double> turns(span.clamps.size(), 0);
   for (std::size_t k = 1; k < turns.size(); ++k) {
     const Eigen::Index node = node_at(mesh.s, span.clamps[k].at);
-    const auto beside = static_cast<std::size_t>(std::min(node, mesh.intervals() - 1));
-    const Eigen::Quaterniond turn = clamp_frame(span, k, 0).conjugate() * frames[beside];
+    const auto interval = static_cast<std::size_t>(std::min(node, mesh.intervals() - 1));
+    const Eigen::Quaterniond turn = clamp_frame(span, k, 0).conjugate() * frames[interval];
     turns[k] = 2 * std::atan2(turn.z(), turn.w());
   }
   return turns;

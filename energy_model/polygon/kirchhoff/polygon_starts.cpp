@@ -22,7 +22,7 @@ Quaterniond base_frame(const RodSpan& span) {
 
 /// Rotates a frame to a tangent by the shortest rotation. The axis of half a rotation is
 /// undetermined; d2 is used, so that the frame stays in the plane.
-Quaterniond turned_to(const Quaterniond& frame, const Eigen::Vector3d& tangent) {
+Quaterniond rotated_to_tangent(const Quaterniond& frame, const Eigen::Vector3d& tangent) {
   const Eigen::Vector3d t = frame * Eigen::Vector3d::UnitZ();
   constexpr double opposite = 1e-9;  // difference of the cosine from -1 for opposite tangents
   if (t.dot(tangent) < opposite - 1) return frame * Quaterniond(0, 0, 1, 0);
@@ -33,12 +33,12 @@ double middle_of(const RodMesh& mesh, Eigen::Index i) { return (mesh.s[i] + mesh
 
 /// Line along which the span roughly extends, and the ratio of the distance of the outermost grips
 /// to the length of rod between them (0.7 with a single grip).
-struct Line {
+struct SpanLine {
   Eigen::Vector3d direction;
   double share;
 };
 
-Line line_of(const RodSpan& span) {
+SpanLine line_of(const RodSpan& span) {
   const RodSpan::Hold& first = span.holds.front();
   const RodSpan::Hold& last = span.holds.back();
   const Eigen::Vector3d chord = last.position - first.position;
@@ -91,18 +91,18 @@ Frames natural_shape(const RodSpan& span, const RodMesh& mesh, const Quaterniond
 }
 
 /// Rotates the tangents along the carried force, or against it if `side` is negative.
-Frames hanging(const RodSpan& span, const RodMesh& mesh, Frames frames, double side) {
-  const Eigen::Matrix3Xd carried = carried_force(span, mesh).on_interval;
+Frames rotated_along_force(const RodSpan& span, const RodMesh& mesh, Frames frames, double side) {
+  const Eigen::Matrix3Xd carried = internal_force(span, mesh).on_interval;
   for (Eigen::Index i = 0; i < mesh.intervals(); ++i) {
     if (carried.col(i).norm() == 0) continue;
     frames[static_cast<std::size_t>(i)] =
-        turned_to(base_frame(span), side * carried.col(i).normalized());
+        rotated_to_tangent(base_frame(span), side * carried.col(i).normalized());
   }
   return frames;
 }
 
 /// Rotates frames out of the plane, because shapes that lie in it may be unstable in space.
-void tilt(const RodSpan& span, const RodMesh& mesh, Frames& frames) {
+void tilt_out_of_plane(const RodSpan& span, const RodMesh& mesh, Frames& frames) {
   constexpr double out = 0.2;
   const double from = span.clamps.empty() ? 0 : span.clamps.front().at;
   const Eigen::Vector3d axis = base_frame(span) * Eigen::Vector3d(1, 0, 1);
@@ -116,15 +116,15 @@ void tilt(const RodSpan& span, const RodMesh& mesh, Frames& frames) {
 }  // namespace
 
 std::vector<Frames> polygon_starts(const RodSpan& span, const RodMesh& mesh, Motion motion) {
-  const Line line = line_of(span);
-  const Quaterniond along = turned_to(base_frame(span), line.direction);
+  const SpanLine line = line_of(span);
+  const Quaterniond along = rotated_to_tangent(base_frame(span), line.direction);
   const Frames straight(static_cast<std::size_t>(mesh.intervals()), along);
-  std::vector<Frames> starts = {straight, hanging(span, mesh, straight, 1)};
+  std::vector<Frames> starts = {straight, rotated_along_force(span, mesh, straight, 1)};
   if (!span.round()) {
     starts.push_back(natural_shape(span, mesh, along));
-    starts.push_back(hanging(span, mesh, straight, -1));
+    starts.push_back(rotated_along_force(span, mesh, straight, -1));
     if (motion == Motion::in_space) {
-      for (Frames& frames : starts) tilt(span, mesh, frames);
+      for (Frames& frames : starts) tilt_out_of_plane(span, mesh, frames);
     }
   }
   const double amplitude = 2 * std::sqrt(std::max(0.0, 1 - line.share));

@@ -34,8 +34,8 @@ Eigen::Matrix3Xd tangents_along(const std::vector<Quaterniond>& frames) {
 
 Eigen::Matrix3Xd RelaxedPolygon::tangents() const { return tangents_along(frames); }
 
-RelaxedPolygon relax_on(const RodSpan& span, const RodMesh& finer, const RodMesh& mesh,
-                        const RelaxedPolygon& polygon, const Deadline& deadline) {
+RelaxedPolygon relax_on_mesh(const RodSpan& span, const RodMesh& finer, const RodMesh& mesh,
+                             const RelaxedPolygon& polygon, const Deadline& deadline) {
   std::vector<Quaterniond> frames;
   for (Eigen::Index i = 0; i < finer.intervals(); ++i) {
     const double middle = (finer.s[i] + finer.s[i + 1]) / 2;
@@ -69,7 +69,7 @@ PolygonMinima polygon_minima(const RodSpan& span, const RodMesh& mesh, const Dea
 std::vector<RodState> states_of(const RodSpan& span, const RodMesh& mesh,
                                 const RelaxedPolygon& polygon) {
   const Eigen::Index last = mesh.intervals();
-  const ForceField carried = carried_force(span, mesh);
+  const ForceField carried = internal_force(span, mesh);
   std::vector<RodState> states(static_cast<std::size_t>(last + 1));
   std::vector<Quaterniond> q = polygon.frames;
   for (std::size_t k = 0; k < span.clamps.size(); ++k) {

@@ -44,9 +44,9 @@ struct RelaxedPolygon {
                                            Motion motion, const Deadline& deadline);
 
 /// Transfers a polygon to another mesh and minimises its energy from there.
-[[nodiscard]] RelaxedPolygon relax_on(const RodSpan& span, const RodMesh& finer,
-                                      const RodMesh& mesh, const RelaxedPolygon& polygon,
-                                      const Deadline& deadline);
+[[nodiscard]] RelaxedPolygon relax_on_mesh(const RodSpan& span, const RodMesh& finer,
+                                           const RodMesh& mesh, const RelaxedPolygon& polygon,
+                                           const Deadline& deadline);
 
 /// Local minima that polygon_minima() has found, lowest first.
 struct PolygonMinima {

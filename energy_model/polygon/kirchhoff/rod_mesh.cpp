@@ -41,16 +41,16 @@ RodMesh mesh_at(const RodSpan& span, const Eigen::VectorXd& nodes) {
   RodMesh mesh;
   mesh.s = nodes;
   mesh.load = Eigen::Matrix3Xd::Zero(3, nodes.size());
-  mesh.pull = mesh.load;
-  mesh.pull_d1 = mesh.load;
+  mesh.tangent_force = mesh.load;
+  mesh.d1_force = mesh.load;
   mesh.hold.assign(static_cast<std::size_t>(nodes.size()), nullptr);
   mesh.couple = mesh.load;
-  mesh.own_load = mesh.load;
-  mesh.own_couple = mesh.load;
+  mesh.follower_load = mesh.load;
+  mesh.follower_couple = mesh.load;
   for (const RodSpan::Load& load : span.loads) {
     const Eigen::Index node = node_at(nodes, load.at);
-    (load.follows ? mesh.own_load : mesh.load).col(node) += load.force;
-    (load.follows ? mesh.own_couple : mesh.couple).col(node) += load.couple;
+    (load.follows ? mesh.follower_load : mesh.load).col(node) += load.force;
+    (load.follows ? mesh.follower_couple : mesh.couple).col(node) += load.couple;
   }
   for (const RodSpan::Hold& hold : span.holds) {
     mesh.hold[static_cast<std::size_t>(node_at(nodes, hold.at))] = &hold;
@@ -61,7 +61,7 @@ RodMesh mesh_at(const RodSpan& span, const Eigen::VectorXd& nodes) {
   return mesh;
 }
 
-ForceField carried_force(const RodSpan& span, const RodMesh& mesh) {
+ForceField internal_force(const RodSpan& span, const RodMesh& mesh) {
   const Eigen::Index last = mesh.intervals();
   ForceField field;
   field.on_interval.resize(3, last);
@@ -70,7 +70,7 @@ ForceField carried_force(const RodSpan& span, const RodMesh& mesh) {
   Eigen::Vector3d n = Eigen::Vector3d::Zero();
   Eigen::Vector3d all = mesh.load.rowwise().sum();
   for (const RodSpan::Part& part : span.parts) {
-    all += part.section.weight_from(part.begin, part.end - part.begin);
+    all += part.section.weight_of_interval(part.begin, part.end - part.begin);
   }
   for (Eigen::Index i = 0; i <= last; ++i) {
     n -= mesh.load.col(i);
@@ -78,8 +78,8 @@ ForceField carried_force(const RodSpan& span, const RodMesh& mesh) {
     field.after_node.col(i) = n;
     if (i == last) break;
     const RodSection& section = mesh.section_of(i);
-    field.on_interval.col(i) = n - section.weight_from(mesh.s[i], mesh.width(i) / 2);
-    n -= section.weight_from(mesh.s[i], mesh.width(i));
+    field.on_interval.col(i) = n - section.weight_of_interval(mesh.s[i], mesh.width(i) / 2);
+    n -= section.weight_of_interval(mesh.s[i], mesh.width(i));
   }
   return field;
 }

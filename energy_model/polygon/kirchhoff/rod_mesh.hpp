@@ -12,7 +12,7 @@ namespace dlo::energy_model {
 /// Node of a mesh at which contact with a rigid body begins, ends or is a point.
 struct RodContact {
   Eigen::Index node = 0;
-  bool moves = false;  ///< whether its arc length is unknown
+  bool is_position_unknown = false;  ///< whether its arc length is unknown
   double force = 0;  ///< unknown force of the body on the rod at the node, along the body's normal
   std::optional<obstacle::Body> touched;  ///< body that only this node touches
   std::optional<Surface> surface;  ///< otherwise the surface on which the rod lies beside this node
@@ -39,13 +39,14 @@ struct RodContacts {
 /// Nodes of a span: its ends, the ends of its parts, grips, loads, and as many nodes between them
 /// as requested.
 struct RodMesh {
-  Eigen::VectorXd s;            ///< arc lengths of the nodes, growing, at least 2
-  Eigen::Matrix3Xd load;        ///< force on each node
-  Eigen::Matrix3Xd couple;      ///< couple on each node
-  Eigen::Matrix3Xd own_load;    ///< force that follows the rod, along its d1, d2 and t
-  Eigen::Matrix3Xd own_couple;  ///< couple that follows the rod, along its d1, d2 and t
-  Eigen::Matrix3Xd pull;  ///< vector q on each node's tangent with the energy -q.t; initially zero
-  Eigen::Matrix3Xd pull_d1;  ///< vector q on each node's d1 with the energy -q.d1; initially zero
+  Eigen::VectorXd s;                 ///< arc lengths of the nodes, growing, at least 2
+  Eigen::Matrix3Xd load;             ///< force on each node
+  Eigen::Matrix3Xd couple;           ///< couple on each node
+  Eigen::Matrix3Xd follower_load;    ///< force that follows the rod, along its d1, d2 and t
+  Eigen::Matrix3Xd follower_couple;  ///< couple that follows the rod, along its d1, d2 and t
+  Eigen::Matrix3Xd
+      tangent_force;  ///< vector q on each node's tangent with the energy -q.t; initially zero
+  Eigen::Matrix3Xd d1_force;  ///< vector q on each node's d1 with the energy -q.d1; initially zero
   std::vector<const RodSpan::Hold*> hold;  ///< grip of the span at each node; null: none
   std::vector<const RodSection*> section;  ///< section of the span in each interval
   RodContacts contacts;
@@ -54,8 +55,8 @@ struct RodMesh {
   [[nodiscard]] bool is_fixed(Eigen::Index node) const {
     const auto i = static_cast<std::size_t>(node);
     return node == 0 || node == intervals() || hold[i] != nullptr || !load.col(node).isZero(0) ||
-           !couple.col(node).isZero(0) || !own_load.col(node).isZero(0) ||
-           !own_couple.col(node).isZero(0) || section[i - 1] != section[i];
+           !couple.col(node).isZero(0) || !follower_load.col(node).isZero(0) ||
+           !follower_couple.col(node).isZero(0) || section[i - 1] != section[i];
   }
   [[nodiscard]] Eigen::Index intervals() const { return s.size() - 1; }
   [[nodiscard]] double width(Eigen::Index interval) const { return s[interval + 1] - s[interval]; }
@@ -84,6 +85,6 @@ struct ForceField {
   Eigen::Matrix3Xd on_interval;  ///< force in the middle of each interval
   Eigen::Matrix3Xd after_node;
 };
-[[nodiscard]] ForceField carried_force(const RodSpan& span, const RodMesh& mesh);
+[[nodiscard]] ForceField internal_force(const RodSpan& span, const RodMesh& mesh);
 
 }  // namespace dlo::energy_model

@@ -15,7 +15,7 @@ namespace {
 constexpr double same_arc_length = 1e-9;  // arc lengths nearer to each other are equal, in l
 
 /// Returns an arc length in units of l; one that is nearly at an end of the rod is moved there.
-double own_arc_length(double at, double length) {
+double scaled_arc_length(double at, double length) {
   const double s = at / length;
   if (s < same_arc_length) return 0;
   return s > 1 - same_arc_length ? 1 : s;
@@ -72,14 +72,14 @@ std::optional<Plane> plane_across_d2(const RodSpan& span) {
     if (std::abs(normal.dot(direction)) > rounding) return std::nullopt;
   }
   // If the polynomials of the other two strains vanish at all probes, they are zero.
-  for (const Eigen::Vector3d& u : natural_probes(span, 24)) {
+  for (const Eigen::Vector3d& u : sample_natural_strains(span, 24)) {
     if (u[0] != 0 || u[2] != 0) return std::nullopt;
   }
   return Plane{span.holds.front().position, span.first_frame.col(2), span.first_frame.col(0)};
 }
 
 /// Treatment of the directors of a span: arbitrary, or fixed to the material.
-enum class Directors { any, of_material };
+enum class Directors { any, material };
 
 /// Returns the parts of the rod from `begin` to `end`, both in units of l.
 std::vector<RodSpan::Part> parts_between(const Problem& problem, double begin, double end,
@@ -88,8 +88,8 @@ std::vector<RodSpan::Part> parts_between(const Problem& problem, double begin, d
   const double unit = bending_unit(problem);
   std::vector<RodSpan::Part> parts;
   for (const RodPart& section : rod_parts(problem)) {
-    const double from = std::max(own_arc_length(section.begin, l), begin);
-    const double to = std::min(own_arc_length(section.end, l), end);
+    const double from = std::max(scaled_arc_length(section.begin, l), begin);
+    const double to = std::min(scaled_arc_length(section.end, l), end);
     // A part shorter than the smallest distance of two arc lengths is omitted.
     if (to - from < same_arc_length) continue;
     RodSection own{section.bending_stiffness / unit, section.torsional_stiffness / unit,
@@ -97,7 +97,7 @@ std::vector<RodSpan::Part> parts_between(const Problem& problem, double begin, d
     if (problem.axial_stiffness) own.stretch = unit / (*problem.axial_stiffness * l * l);
     own.slope = section.weight_slope * l * l * l * l / unit;
     own.weight -= (section.begin / l - begin) * own.slope;
-    if (directors == Directors::of_material && section.bending_stiffness_2) {
+    if (directors == Directors::material && section.bending_stiffness_2) {
       own.bending_2 = *section.bending_stiffness_2 / unit;
     }
     if (problem.drag) {
@@ -122,14 +122,14 @@ void add_grips(const Problem& problem, const std::vector<OrderedGrip>& grips, Di
   const Eigen::Vector3d origin = problem.grips.front().position;
   std::optional<Grip> first;  // first clamp
   for (const OrderedGrip& grip : grips) {
-    const double at = own_arc_length(grip.grip->at, l) - span.begin;
+    const double at = scaled_arc_length(grip.grip->at, l) - span.begin;
     if (at < 0 || at > span.length) continue;
     span.holds.push_back({at, (grip.grip->position - origin) / l, grip.index});
     if (!grip.grip->direction) continue;
     RodSpan::Clamp clamp{at, grip.grip->direction->normalized(), {}};
     if (!first) {
       first = *grip.grip;
-      if (directors == Directors::of_material) {
+      if (directors == Directors::material) {
         if (!first->frame) first->frame = FrameHold{};
         span.first_roll = first->frame->roll;
       } else {
@@ -138,8 +138,8 @@ void add_grips(const Problem& problem, const std::vector<OrderedGrip>& grips, Di
         span.first_frame = frame_along(clamp.direction, d1);
       }
     } else if (first->frame && grip.grip->frame) {
-      clamp.frame =
-          RodSpan::Frame{held_d1(problem, *grip.grip), turns_between(problem, *first, *grip.grip)};
+      clamp.frame = RodSpan::Frame{held_d1(problem, *grip.grip),
+                                   prescribed_turns(problem, *first, *grip.grip)};
     }
     span.clamps.push_back(clamp);
   }
@@ -149,8 +149,8 @@ void add_loads(const Problem& problem, RodSpan& span) {
   const double l = problem.length;
   const double force_unit = bending_unit(problem) / (l * l);
   for (const Load& load : problem.loads) {
-    double at = own_arc_length(load.at, l) - span.begin;
-    if (at < 0 || at > span.length || clamp_under(problem, load)) continue;
+    double at = scaled_arc_length(load.at, l) - span.begin;
+    if (at < 0 || at > span.length || clamp_at_load(problem, load)) continue;
     for (const RodSpan::Hold& hold : span.holds) {
       if (std::abs(at - hold.at) < same_arc_length) at = hold.at;
     }
@@ -231,20 +231,20 @@ RodSpan without_frames(RodSpan span) {
   return span;
 }
 
-RodSpan whole(const Problem& problem) {
+RodSpan whole_span(const Problem& problem) {
   check(problem);
   const Directors directors =
-      has_material_directors(problem) ? Directors::of_material : Directors::any;
+      has_material_directors(problem) ? Directors::material : Directors::any;
   RodSpan span = make_span(problem, ordered_grips(problem), 0, 1, directors);
-  if (directors == Directors::of_material) span.first_frame = material_frame(problem);
+  if (directors == Directors::material) span.first_frame = material_frame(problem);
   return span;
 }
 
-RodSpan with_own_axes(const Problem& problem) {
+RodSpan whole_span_with_axes(const Problem& problem) {
   constexpr double rounding = 1e-12;
   require_no_obstacles(problem);
   const bool material = has_material_directors(problem);
-  RodSpan span = material ? uncut(problem) : whole(problem);
+  RodSpan span = material ? whole_directed_span(problem) : whole_span(problem);
   span.has_potential = has_potential(problem);
   if (material) return span;
   span.plane = plane_of(span);
@@ -275,7 +275,7 @@ RodSpan with_own_axes(const Problem& problem) {
   return span;
 }
 
-RodSpan loaded_by(RodSpan span, double factor) {
+RodSpan scale_nonpotential_loads(RodSpan span, double factor) {
   for (RodSpan::Part& part : span.parts) {
     if (!part.section.drag) continue;
     part.section.drag->normal *= factor;
@@ -288,7 +288,7 @@ RodSpan loaded_by(RodSpan span, double factor) {
   return span;
 }
 
-std::vector<Eigen::Vector3d> natural_probes(const RodSpan& span, int count) {
+std::vector<Eigen::Vector3d> sample_natural_strains(const RodSpan& span, int count) {
   std::vector<Eigen::Vector3d> strains;
   if (!span.natural) return strains;
   for (int i = 0; i <= count; ++i) strains.push_back(span.natural(span.length * i / count));
@@ -298,9 +298,9 @@ std::vector<Eigen::Vector3d> natural_probes(const RodSpan& span, int count) {
   return strains;
 }
 
-RodSpan uncut(const Problem& problem) {
+RodSpan whole_directed_span(const Problem& problem) {
   require_no_obstacles(problem);
-  RodSpan span = whole(problem);
+  RodSpan span = whole_span(problem);
   span.natural = [problem](double s) {
     return Eigen::Vector3d(problem.length * natural_strain(problem, s * problem.length));
   };
@@ -314,7 +314,7 @@ std::vector<RodSpan> cut_at_clamps(const Problem& problem) {
   const std::vector<OrderedGrip> grips = ordered_grips(problem);
   std::vector<double> cuts = {0, 1};
   for (const OrderedGrip& grip : grips) {
-    if (grip.grip->direction) cuts.push_back(own_arc_length(grip.grip->at, problem.length));
+    if (grip.grip->direction) cuts.push_back(scaled_arc_length(grip.grip->at, problem.length));
   }
   std::sort(cuts.begin(), cuts.end());
   cuts.erase(std::unique(cuts.begin(), cuts.end()), cuts.end());

@@ -99,22 +99,23 @@ using ClampFrames = std::vector<std::optional<Eigen::Matrix3d>>;
 /// are carried by the gripper.
 /// @throws std::invalid_argument if the problem is out of range, or the frame of the first clamp of
 /// a rod with material directors is undetermined
-[[nodiscard]] RodSpan whole(const Problem& problem);
+[[nodiscard]] RodSpan whole_span(const Problem& problem);
 
 /// Returns the whole of a rod with material directors as one span, with its natural strains and its
 /// plane. Its torque passes through clamps that do not hold the frame.
-/// @throws std::invalid_argument as whole(), or if there are obstacles
-[[nodiscard]] RodSpan uncut(const Problem& problem);
+/// @throws std::invalid_argument as whole_span(), or if there are obstacles
+[[nodiscard]] RodSpan whole_directed_span(const Problem& problem);
 
-/// Returns the whole rod as uncut() or whole() does, for loads without a potential: the frame of
-/// the first clamp is that in which such loads are given, for a round rod too.
-/// @throws std::invalid_argument as uncut(), or if a load follows a rod along a d1 that is
-/// undetermined
-[[nodiscard]] RodSpan with_own_axes(const Problem& problem);
+/// Returns the whole rod as whole_directed_span() or whole_span() does, for loads without a
+/// potential: the frame of the first clamp is that in which such loads are given, for a round rod
+/// too.
+/// @throws std::invalid_argument as whole_directed_span(), or if a load follows a rod along a d1
+/// that is undetermined
+[[nodiscard]] RodSpan whole_span_with_axes(const Problem& problem);
 
 /// Returns natural strains at count + 1 equally spaced points and in the middle of each part; empty
 /// for a straight rod.
-[[nodiscard]] std::vector<Eigen::Vector3d> natural_probes(const RodSpan& span, int count);
+[[nodiscard]] std::vector<Eigen::Vector3d> sample_natural_strains(const RodSpan& span, int count);
 
 /// Returns the section at s; where two meet, the later one.
 [[nodiscard]] const RodSection& section_at(const RodSpan& span, double s);
@@ -127,7 +128,7 @@ using ClampFrames = std::vector<std::optional<Eigen::Matrix3d>>;
 [[nodiscard]] double least_bending_stiffness(const RodSpan& span);
 
 /// Returns the span with its drag, the loads that follow it and all couples multiplied by a factor.
-[[nodiscard]] RodSpan loaded_by(RodSpan span, double factor);
+[[nodiscard]] RodSpan scale_nonpotential_loads(RodSpan span, double factor);
 
 /// Returns the sum of the norms of weight and loads.
 [[nodiscard]] double total_load(const RodSpan& span);

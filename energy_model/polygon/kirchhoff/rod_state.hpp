@@ -24,7 +24,7 @@ struct RodSection {
   std::optional<Drag> drag = std::nullopt;             ///< drag, with forces in units of the rod
   double stretch = 0;  ///< EI / (EA l^2): stretch of the tangent per tension; 0: inextensible
 
-  [[nodiscard]] Eigen::Vector3d weight_from(double s, double length) const {
+  [[nodiscard]] Eigen::Vector3d weight_of_interval(double s, double length) const {
     return length * (weight + (s + length / 2) * slope);
   }
 

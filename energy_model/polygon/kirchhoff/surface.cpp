@@ -20,7 +20,7 @@ using Matrix3 = Eigen::Matrix<T, 3, 3>;
 
 /// Quantities of a cross-section near a surface, in the axes of the cross-section.
 template <class T>
-struct OnSurface {
+struct SurfaceState {
   Vector3<T> normal;  ///< N of lying_conditions(), not normalised
   Matrix3<T> A;
   Vector3<T> moment;
@@ -35,9 +35,10 @@ T dot(const Vector3<T>& a, const Vector3<T>& b) {
 }
 
 template <class T>
-OnSurface<T> on_surface(const Surface& surface, const RodSection& section, const Vector3<T>& r,
-                        const Matrix3<T>& R, const Vector3<T>& m, const Vector3<T>& n) {
-  OnSurface<T> on;
+SurfaceState<T> surface_state(const Surface& surface, const RodSection& section,
+                              const Vector3<T>& r, const Matrix3<T>& R, const Vector3<T>& m,
+                              const Vector3<T>& n) {
+  SurfaceState<T> on;
   const Matrix3<T> own = R.transpose();
   const Vector3<T> from = r - surface.centre.cast<T>();
   const double curvature = surface.curvature();
@@ -68,7 +69,7 @@ struct TangentRates {
 };
 
 template <class T>
-TangentRates<T> tangent_rates(const OnSurface<T>& on, const RodSection& section) {
+TangentRates<T> tangent_rates(const SurfaceState<T>& on, const RodSection& section) {
   const Vector3<T> t = Eigen::Vector3d::UnitZ().cast<T>();
   const Vector3<T> compliance = section.compliance().cast<T>();
   const Vector3<T>& M = on.moment;
@@ -88,7 +89,7 @@ TangentRates<T> tangent_rates(const OnSurface<T>& on, const RodSection& section)
 }
 
 template <class T>
-T pressure_of(const OnSurface<T>& on, const RodSection& section) {
+T pressure_of(const SurfaceState<T>& on, const RodSection& section) {
   const TangentRates<T> rates = tangent_rates(on, section);
   const Vector3<T> along = on.A.col(2);
   const Vector3<T> bent = on.A * rates.first;
@@ -97,8 +98,8 @@ T pressure_of(const OnSurface<T>& on, const RodSection& section) {
   return -rest / dot<T>(on.normal, rates.third_by_pressure);
 }
 
-OnSurface<Dual> dual_on_surface(const Surface& surface, const RodSection& section,
-                                const RodState& state) {
+SurfaceState<Dual> dual_on_surface(const Surface& surface, const RodSection& section,
+                                   const RodState& state) {
   const auto duals = [](const Eigen::Vector3d& v, Eigen::Index first) {
     Vector3<Dual> result;
     for (Eigen::Index k = 0; k < 3; ++k) result[k] = Dual(v[k], 12, first + k);
@@ -110,8 +111,8 @@ OnSurface<Dual> dual_on_surface(const Surface& surface, const RodSection& sectio
     const Vector3<Dual> director = R.col(k);
     R.col(k) += spin.cross(director);
   }
-  return on_surface<Dual>(surface, section, duals(state.r, 0), R, duals(state.m, 6),
-                          duals(state.n, 9));
+  return surface_state<Dual>(surface, section, duals(state.r, 0), R, duals(state.m, 6),
+                             duals(state.n, 9));
 }
 
 }  // namespace
@@ -152,7 +153,7 @@ Surface surface_of(const obstacle::Body& body, const Eigen::Vector3d& near) {
 
 LyingConditions lying_conditions(const Surface& surface, const RodSection& section,
                                  const RodState& state) {
-  const OnSurface<Dual> on = dual_on_surface(surface, section, state);
+  const SurfaceState<Dual> on = dual_on_surface(surface, section, state);
   const TangentRates<Dual> rates = tangent_rates(on, section);
   const Vector3<Dual> along = on.A.col(2);
   const std::array<Dual, 4> conditions = {
@@ -174,7 +175,7 @@ Pressure pressure_with_derivatives(const Surface& surface, const RodSection& sec
 }
 
 double pressure(const Surface& surface, const RodSection& section, const RodState& state) {
-  return pressure_of(on_surface<double>(surface, section, state.r, state.R, state.m, state.n),
+  return pressure_of(surface_state<double>(surface, section, state.r, state.R, state.m, state.n),
                      section);
 }
 

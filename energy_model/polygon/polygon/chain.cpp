@@ -55,7 +55,7 @@ void check(const ChainProblem& problem, const ChainOptions& options) {
           static_cast<double>(problem.node_forces.cols()), "one more than segments");
   require(problem.node_forces.allFinite() && problem.start.allFinite(), "ChainProblem",
           "node_forces", problem.node_forces.norm(), "finite");
-  require_finite("ChainProblem", "held_angle", problem.held_angle);
+  require_finite("ChainProblem", "first_angle", problem.first_angle);
   require_positive("ChainProblem", "stiffness", problem.stiffness);
   require_unlike_joints("ChainProblem", problem.law, problem.stiffnesses, problem.natural_turns, n);
   require_positive("ChainOptions", "tolerance", options.tolerance);
@@ -74,8 +74,8 @@ void check(const ChainProblem& problem, const ChainOptions& options) {
 Eigen::VectorXd start_from_moments(const ChainProblem& problem) {
   const Eigen::Index n = problem.segment_lengths.size();
   const Eigen::Matrix2Xd forces = segment_forces(problem);
-  const Eigen::Vector2d normal(-std::sin(problem.held_angle), std::cos(problem.held_angle));
-  const Eigen::Vector2d tangent(std::cos(problem.held_angle), std::sin(problem.held_angle));
+  const Eigen::Vector2d normal(-std::sin(problem.first_angle), std::cos(problem.first_angle));
+  const Eigen::Vector2d tangent(std::cos(problem.first_angle), std::sin(problem.first_angle));
   Eigen::VectorXd turns = Eigen::VectorXd::Zero(n);
   double moment = 0;
   for (Eigen::Index i = n - 1; i >= 1; --i) {
@@ -96,7 +96,7 @@ Eigen::VectorXd start_from_moments(const ChainProblem& problem) {
   if (turned < 1e-6 && total.dot(tangent) < 0) turns[1] = 1e-3;
   if (problem.natural_turns.size() > 0) turns.tail(n - 1) += problem.natural_turns;
   Eigen::VectorXd angles(n);
-  double angle = problem.held_angle;
+  double angle = problem.first_angle;
   for (Eigen::Index i = 0; i < n; ++i) {
     angle += turns[i];
     angles[i] = angle;
@@ -105,7 +105,7 @@ Eigen::VectorXd start_from_moments(const ChainProblem& problem) {
 }
 
 /// Directions in which the angles of a chain move.
-enum class Bends { in_plane, out_of_plane };
+enum class BendingDirection { in_plane, out_of_plane };
 
 /// Returns the second derivative by the angles of the free segments 1 .. n-1, as a band (see
 /// PolygonFactor). Out of the plane it is that of a chain without natural turns. With the angles
@@ -115,7 +115,7 @@ enum class Bends { in_plane, out_of_plane };
 ///     2 E = sum M / sin(alpha) (cos(alpha) (psi_j^2 + psi_i^2) - 2 psi_j psi_i) + sum L F.t
 ///     psi_i^2
 Eigen::MatrixXd second_derivative(const ChainProblem& problem, const Eigen::Matrix2Xd& forces,
-                                  const Eigen::VectorXd& angles, Bends bends) {
+                                  const Eigen::VectorXd& angles, BendingDirection bends) {
   const Eigen::Index free = angles.size() - 1;
   Eigen::MatrixXd band = Eigen::MatrixXd::Zero(std::min<Eigen::Index>(2, free), free);
   for (Eigen::Index i = 1; i <= free; ++i) {
@@ -123,7 +123,7 @@ Eigen::MatrixXd second_derivative(const ChainProblem& problem, const Eigen::Matr
     const AngleJoint joint = joint_at(problem, i, alpha);
     double coupled = joint.stiffness;
     double own = coupled;
-    if (bends == Bends::out_of_plane) {
+    if (bends == BendingDirection::out_of_plane) {
       const double sine = std::sin(alpha);
       if (sine != 0) coupled = joint.moment / sine;
       own = coupled * std::cos(alpha);
@@ -159,20 +159,21 @@ double largest_natural_moment(const ChainProblem& problem) {
 
 /// Takes damped Newton steps until the gradient is below the tolerance. No step may increase the
 /// energy beyond rounding or double the gradient.
-void newton_in_chain(const ChainProblem& problem, const ChainOptions& options,
-                     const Deadline& deadline, double moment_scale, ChainResult& result) {
+void minimise_by_newton(const ChainProblem& problem, const ChainOptions& options,
+                        const Deadline& deadline, double moment_scale, ChainResult& result) {
   const Eigen::Matrix2Xd forces = segment_forces(problem);
   const Eigen::Index free = result.angles.size() - 1;
   Eigen::VectorXd gradient(result.angles.size());
   double energy = chain_energy(problem, result.angles, gradient);
   ++result.evaluations;
   // Angles near pi have a rounding error that stiff joints turn into moments.
-  const double rounding_moment = 4 * std::numeric_limits<double>::epsilon() * std::numbers::pi *
-                                 std::sqrt(static_cast<double>(free)) *
-                                 second_derivative(problem, forces, result.angles, Bends::in_plane)
-                                     .row(0)
-                                     .cwiseAbs()
-                                     .maxCoeff();
+  const double rounding_moment =
+      4 * std::numeric_limits<double>::epsilon() * std::numbers::pi *
+      std::sqrt(static_cast<double>(free)) *
+      second_derivative(problem, forces, result.angles, BendingDirection::in_plane)
+          .row(0)
+          .cwiseAbs()
+          .maxCoeff();
   const double tolerance =
       std::max(options.tolerance * moment_scale, std::min(rounding_moment, 1e-6 * moment_scale));
   PolygonFactor factor;
@@ -184,14 +185,15 @@ void newton_in_chain(const ChainProblem& problem, const ChainOptions& options,
       return;
     }
     result.residual = gradient.norm();
-    const Eigen::MatrixXd band = second_derivative(problem, forces, result.angles, Bends::in_plane);
+    const Eigen::MatrixXd band =
+        second_derivative(problem, forces, result.angles, BendingDirection::in_plane);
     const bool small = result.residual <= tolerance;
     const bool positive = factor.compute(band, none, damping * band.row(0).cwiseAbs().maxCoeff());
     if (small && damping == 0) {
-      const bool stays_in_plane =
-          problem.natural_turns.size() > 0 ||
-          factor.compute(second_derivative(problem, forces, result.angles, Bends::out_of_plane),
-                         none, 0);
+      const bool stays_in_plane = problem.natural_turns.size() > 0 ||
+                                  factor.compute(second_derivative(problem, forces, result.angles,
+                                                                   BendingDirection::out_of_plane),
+                                                 none, 0);
       result.status = positive && stays_in_plane ? SolveStatus::converged : SolveStatus::saddle;
       return;
     }
@@ -257,14 +259,14 @@ ChainResult solve_chain(const ChainProblem& problem, const ChainOptions& options
   ChainResult result;
   result.angles =
       options.start_angles.size() > 0 ? options.start_angles : start_from_moments(problem);
-  result.angles[0] = problem.held_angle;
+  result.angles[0] = problem.first_angle;
 
   Eigen::VectorXd gradient(n);
   const double moment_scale =
       problem.node_forces.colwise().norm().sum() * problem.segment_lengths.sum() +
       // Not zero without forces: the straight chain then converges at once.
       largest_natural_moment(problem) + 1e-300;
-  newton_in_chain(problem, options, deadline, moment_scale, result);
+  minimise_by_newton(problem, options, deadline, moment_scale, result);
   result.message = to_string(result.status);
 
   const double total = chain_energy(problem, result.angles, gradient);
@@ -274,8 +276,8 @@ ChainResult solve_chain(const ChainProblem& problem, const ChainOptions& options
   }
   result.load_energy = total - result.bending_energy;
   const Eigen::Vector2d across(-std::sin(result.angles[0]), std::cos(result.angles[0]));
-  result.held_torque = -joint_at(problem, 1, result.angles[1] - result.angles[0]).moment -
-                       problem.segment_lengths[0] * across.dot(segment_forces(problem).col(0));
+  result.clamp_torque = -joint_at(problem, 1, result.angles[1] - result.angles[0]).moment -
+                        problem.segment_lengths[0] * across.dot(segment_forces(problem).col(0));
   result.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
   return result;
 }

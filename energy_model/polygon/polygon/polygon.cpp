@@ -29,13 +29,13 @@ constexpr double largest_step = 0.2;
 constexpr int most_escapes = 10;
 /// Initial step, in polygon lengths, below which slow steps with a modified Hessian are treated as
 /// an approach to a saddle.
-constexpr double first_beside_saddle = 1e-3;
+constexpr double first_saddle_step = 1e-3;
 constexpr int most_slow = 3;
 /// Largest residual force on a free point, divided by the forces that act [-]. The forces on a
 /// hundred points then balance within allowed_imbalance. The rounding error of positions times the
-/// largest stiffness is allowed as well (prove()). A polygon that is compressed between two
+/// largest stiffness is allowed as well (verify_result()). A polygon that is compressed between two
 /// constraints does not reach a smaller residual.
-constexpr double force_left = 1e-10;
+constexpr double largest_residual_force = 1e-10;
 
 /// Newton's method for one problem, with the data that all steps need.
 class PolygonDescent {
@@ -61,7 +61,7 @@ class PolygonDescent {
   /// Takes Newton steps until they are below `tolerance` polygon lengths.
   SolveStatus run(double tolerance) {
     tolerance_ = tolerance;
-    way_ = {};
+    iteration_ = {};
     energy_ = polygon_energy(problem_, result_.points, gradient_);
     ++result_.evaluations;
     if (free_ == 0) return SolveStatus::converged;
@@ -78,26 +78,26 @@ class PolygonDescent {
   /// rounding, and the residual force on each free point is negligible against the forces that act.
   /// (A step below the tolerance may leave a larger residual, because segments are stiff. Up to
   /// three further steps are then taken.)
-  void prove() {
+  void verify_result() {
     constexpr int most_steps = 3;
     for (int taken = 0;; ++taken) {
       const double acting = evaluate();
       if (!succeeded(result_.status) || free_ == 0) return;
       assemble(HessianTerms::all);
-      if (!factor(0)) return refuse("the Hessian is not positive definite");
+      if (!factor(0)) return revoke_success("the Hessian is not positive definite");
       const Eigen::VectorXd step = solver_.solve(free_part(-gradient_));
       const double size = step.norm() / std::sqrt(static_cast<double>(free_)) / length_;
       const double rounding = 16 * epsilon * largest_ * result_.points.cwiseAbs().maxCoeff();
       std::ostringstream why;
       if (!(size <= rounding_step)) {
         why << "the Newton step is " << size << " of the length";
-        return refuse(why.str());
+        return revoke_success(why.str());
       }
-      if (result_.residual <= std::max(rounding, force_left * acting)) return;
+      if (result_.residual <= std::max(rounding, largest_residual_force * acting)) return;
       if (taken == most_steps) {
         why << "the largest residual force on a point is " << result_.residual
             << " N, with acting forces of " << acting << " N";
-        return refuse(why.str());
+        return revoke_success(why.str());
       }
       result_.points = moved(step);
       count_twists();
@@ -110,66 +110,67 @@ class PolygonDescent {
   static constexpr double most_damping = 1e3;
 
   /// State of the iteration of one run().
-  struct Way {
+  struct IterationState {
     double damping = 0;
     double last_step = std::numeric_limits<double>::infinity();
     double last_stiffening = 0;
-    double beside_saddle = first_beside_saddle;
-    int slows = 0;  // consecutive steps with an incomplete Hessian that became shorter
+    double saddle_step = first_saddle_step;
+    int slow_steps = 0;  // consecutive steps with an incomplete Hessian that became shorter
     int escapes = 0;
   };
 
   /// Takes one step of run(). @return the final status; std::nullopt if the iteration continues
   [[nodiscard]] std::optional<SolveStatus> advance() {
-    const bool exact = which_ == HessianTerms::all;
-    if (!factor(way_.damping)) {
-      if (!exact || !options_.project_hessian) return damp();
-      assemble(HessianTerms::stiffening);
+    const bool exact = hessian_terms_ == HessianTerms::all;
+    if (!factor(iteration_.damping)) {
+      if (!exact || !options_.project_hessian) return increase_damping();
+      assemble(HessianTerms::positive_terms);
       return std::nullopt;
     }
     const Eigen::VectorXd force = free_part(-gradient_);
     Eigen::VectorXd step = solver_.solve(force);
     const double size = step.norm() / std::sqrt(static_cast<double>(free_)) / length_;
     if (!std::isfinite(size)) return SolveStatus::failed;
-    if (way_.damping == 0 && exact) {
+    if (iteration_.damping == 0 && exact) {
       if (size <= tolerance_) return SolveStatus::converged;
-      if (size < rounding_step && size > way_.last_step / 2) return SolveStatus::roundoff_limited;
-      way_.last_step = size;
-      way_.slows = 0;
+      if (size < rounding_step && size > iteration_.last_step / 2)
+        return SolveStatus::roundoff_limited;
+      iteration_.last_step = size;
+      iteration_.slow_steps = 0;
     } else if (const bool at_rest = force.dot(step) <= rounding_energy();
-               at_rest || (size < way_.beside_saddle && way_.slows >= most_slow)) {
+               at_rest || (size < iteration_.saddle_step && iteration_.slow_steps >= most_slow)) {
       // The polygon is in equilibrium, or approaches it slowly, but only omitted terms or damping
       // made the Hessian positive.
-      way_.beside_saddle = size / 4;
-      way_.slows = 0;
-      return leave(at_rest);
+      iteration_.saddle_step = size / 4;
+      iteration_.slow_steps = 0;
+      return leave_saddle(at_rest);
     }
     step *= std::min(1.0, largest_step * length_ / step.cwiseAbs().maxCoeff());
-    return take(step, size);
+    return try_step(step, size);
   }
 
   /// Leaves a saddle along the lowest mode. If the polygon is at rest and the exact Hessian is
   /// positive, the iteration only continues without damping. Returns std::nullopt if the iteration
   /// continues, `saddle` after too many attempts, and `failed` if no damping suffices.
-  [[nodiscard]] std::optional<SolveStatus> leave(bool at_rest) {
+  [[nodiscard]] std::optional<SolveStatus> leave_saddle(bool at_rest) {
     assemble(HessianTerms::all);
     if (at_rest && factor(0)) {
-      way_.damping = 0;
+      iteration_.damping = 0;
       return std::nullopt;
     }
-    if (at_rest && way_.escapes++ == most_escapes) return SolveStatus::saddle;
-    way_.damping = std::max(way_.damping, first_damping);
-    for (; !factor(way_.damping); way_.damping *= 4) {
-      if (way_.damping > most_damping) return SolveStatus::failed;
+    if (at_rest && iteration_.escapes++ == most_escapes) return SolveStatus::saddle;
+    iteration_.damping = std::max(iteration_.damping, first_damping);
+    for (; !factor(iteration_.damping); iteration_.damping *= 4) {
+      if (iteration_.damping > most_damping) return SolveStatus::failed;
     }
-    escape();
+    move_along_lowest_mode();
     assemble(HessianTerms::all);
     return std::nullopt;
   }
 
   /// Takes a step if it does not increase the energy; otherwise makes the next step shorter.
-  [[nodiscard]] std::optional<SolveStatus> take(const Eigen::VectorXd& step, double size) {
-    const bool exact = which_ == HessianTerms::all;
+  [[nodiscard]] std::optional<SolveStatus> try_step(const Eigen::VectorXd& step, double size) {
+    const bool exact = hessian_terms_ == HessianTerms::all;
     const Eigen::Matrix3Xd trial = moved(step);
     const double trial_energy = polygon_energy(problem_, trial, trial_gradient_);
     ++result_.evaluations;
@@ -179,20 +180,20 @@ class PolygonDescent {
       gradient_ = trial_gradient_;
       energy_ = trial_energy;
       assemble(HessianTerms::all);
-      way_.damping = way_.damping < 4 * first_damping ? 0 : way_.damping / 8;
-      const bool slow = !exact && size < std::exchange(way_.last_stiffening, size);
-      way_.slows = slow ? way_.slows + 1 : 0;
-    } else if (exact && way_.damping == 0 && options_.project_hessian) {
-      assemble(HessianTerms::stiffening);
+      iteration_.damping = iteration_.damping < 4 * first_damping ? 0 : iteration_.damping / 8;
+      const bool slow = !exact && size < std::exchange(iteration_.last_stiffening, size);
+      iteration_.slow_steps = slow ? iteration_.slow_steps + 1 : 0;
+    } else if (exact && iteration_.damping == 0 && options_.project_hessian) {
+      assemble(HessianTerms::positive_terms);
     } else {
-      return damp();
+      return increase_damping();
     }
     return std::nullopt;
   }
 
-  [[nodiscard]] std::optional<SolveStatus> damp() {
-    way_.damping = std::max(4 * way_.damping, first_damping);
-    if (way_.damping > most_damping) return SolveStatus::failed;
+  [[nodiscard]] std::optional<SolveStatus> increase_damping() {
+    iteration_.damping = std::max(4 * iteration_.damping, first_damping);
+    if (iteration_.damping > most_damping) return SolveStatus::failed;
     return std::nullopt;
   }
 
@@ -211,7 +212,7 @@ class PolygonDescent {
     return acting;
   }
 
-  void refuse(const std::string& why) {
+  void revoke_success(const std::string& why) {
     result_.status = SolveStatus::not_verified;
     result_.message = std::string(to_string(result_.status)) + ": " + why;
   }
@@ -231,7 +232,7 @@ class PolygonDescent {
   }
 
   void assemble(HessianTerms which) {
-    which_ = which;
+    hessian_terms_ = which;
     // A joint couples three points.
     constexpr Eigen::Index coupled = 3;
     const Eigen::Index unknowns = axes_ * free_;
@@ -285,7 +286,7 @@ class PolygonDescent {
 
   /// Leaves a saddle along the direction of its lowest curvature, found by inverse iteration with
   /// the damped factor.
-  void escape() {
+  void move_along_lowest_mode() {
     constexpr int iterations = 20;
     constexpr double size = 1e-3;
     Eigen::VectorXd direction(axes_ * free_);
@@ -294,11 +295,11 @@ class PolygonDescent {
     }
     for (int i = 0; i < iterations; ++i) direction = solver_.solve(direction).normalized();
     direction *= size * length_ / direction.cwiseAbs().maxCoeff();
-    const Eigen::Matrix3Xd ahead = moved(direction);
+    const Eigen::Matrix3Xd forward = moved(direction);
     const Eigen::Matrix3Xd back = moved(-direction);
-    const double ahead_energy = polygon_energy(problem_, ahead, trial_gradient_);
-    const bool better = ahead_energy <= polygon_energy(problem_, back, gradient_);
-    result_.points = better ? ahead : back;
+    const double forward_energy = polygon_energy(problem_, forward, trial_gradient_);
+    const bool better = forward_energy <= polygon_energy(problem_, back, gradient_);
+    result_.points = better ? forward : back;
     count_twists();
     energy_ = polygon_energy(problem_, result_.points, gradient_);
     result_.evaluations += 3;
@@ -312,16 +313,16 @@ class PolygonDescent {
   // Coordinates in which free points move: x and y with natural turns, else all three.
   Eigen::Index axes_;
   double tolerance_ = 0;
-  Way way_;
+  IterationState iteration_;
   std::vector<Eigen::Index> index_;  // index of each point among the free ones; -1 for held points
   Eigen::Index free_ = 0;
   double energy_ = 0;
   double largest_ = 0;
   Eigen::Matrix3Xd gradient_;
   Eigen::Matrix3Xd trial_gradient_;
-  HessianTerms which_ = HessianTerms::all;  // terms that hessian_ contains
-  Eigen::MatrixXd hessian_;                 // Hessian of the free points, banded: see PolygonFactor
-  Eigen::MatrixXd columns_;                 // twist_columns() of the free points
+  HessianTerms hessian_terms_ = HessianTerms::all;  // terms that hessian_ contains
+  Eigen::MatrixXd hessian_;  // Hessian of the free points, banded: see PolygonFactor
+  Eigen::MatrixXd columns_;  // twist_columns() of the free points
   PolygonFactor solver_;
 };
 
@@ -372,7 +373,7 @@ PolygonResult solve_polygon(const PolygonProblem& problem, const Points& start,
     stage.stretch_stiffness = problem.stretch_stiffness;
     stage.obstacles = problem.obstacles;
     PolygonDescent asked(stage, options, deadline, result);
-    asked.prove();
+    asked.verify_result();
     for (const PolygonTwist& twist : stage.twists) {
       result.twists.push_back(polygon_twist_angle(twist, result.points));
     }

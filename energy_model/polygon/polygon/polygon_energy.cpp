@@ -98,7 +98,7 @@ NaturalTurn natural_turn(const PolygonProblem& problem, Eigen::Index i) {
 }
 
 /// Returns the second derivative of the angle of d = length u in the plane z = 0 by d.
-Eigen::Matrix3d second_of_angle(const Eigen::Vector3d& u, double length) {
+Eigen::Matrix3d angle_hessian(const Eigen::Vector3d& u, double length) {
   const double xy = 2 * u.x() * u.y();
   const double difference = u.y() * u.y() - u.x() * u.x();
   Eigen::Matrix3d result = Eigen::Matrix3d::Zero();
@@ -106,7 +106,7 @@ Eigen::Matrix3d second_of_angle(const Eigen::Vector3d& u, double length) {
   return result / (length * length);
 }
 
-Eigen::Vector3d left_of(const Eigen::Vector3d& u) { return {-u.y(), u.x(), 0}; }
+Eigen::Vector3d rotated_left(const Eigen::Vector3d& u) { return {-u.y(), u.x(), 0}; }
 
 /// Returns whether each point is held; obstacles do not act on a held point.
 std::vector<bool> held_points(const PolygonProblem& problem) {
@@ -128,8 +128,8 @@ double sample_stiffness(const PointObstacle& obstacle, Eigen::Index i, double sh
 /// `share` is its position between point i and the next, from 0 to 1.
 /// @param held  result of held_points()
 template <typename Action>
-void for_each_look(const std::vector<bool>& held, const PointObstacle& obstacle,
-                   const Points& points, const Action& action) {
+void for_each_sample(const std::vector<bool>& held, const PointObstacle& obstacle,
+                     const Points& points, const Action& action) {
   const Eigen::Index n = points.cols() - 1;
   const auto is_held = [&held](Eigen::Index i) { return held[static_cast<std::size_t>(i)]; };
   for (Eigen::Index i = 0; i <= n; ++i) {
@@ -201,8 +201,8 @@ double polygon_energy(const PolygonProblem& problem, const Points& points,
       const double alpha = std::atan2(corner.u.x() * corner.v.y() - corner.u.y() * corner.v.x(),
                                       corner.u.dot(corner.v));
       energy -= natural.constant + natural.couple * alpha;
-      by_a += natural.couple / corner.a * left_of(corner.u);
-      by_b -= natural.couple / corner.b * left_of(corner.v);
+      by_a += natural.couple / corner.a * rotated_left(corner.u);
+      by_b -= natural.couple / corner.b * rotated_left(corner.v);
     }
     gradient.col(i - 1) -= by_a;
     gradient.col(i) += by_a - by_b;
@@ -221,7 +221,7 @@ double polygon_energy(const PolygonProblem& problem, const Points& points,
       gradient.col(i) += (1 - share) * by_point;
       if (share > 0) gradient.col(i + 1) += share * by_point;
     };
-    for_each_look(held, obstacle, points, push);
+    for_each_sample(held, obstacle, points, push);
   }
   return energy;
 }
@@ -244,7 +244,7 @@ void add_obstacle_hessian(const PolygonProblem& problem, const Points& points, H
       add(i + 1, i, share * (1 - share) * H);
       add(i, i + 1, share * (1 - share) * H);
     };
-    for_each_look(held, obstacle, points, stiffen);
+    for_each_sample(held, obstacle, points, stiffen);
   }
 }
 
@@ -270,25 +270,25 @@ void polygon_hessian(const PolygonProblem& problem, const Points& points, Hessia
     const Joint j = joint(problem.law, joint_stiffness(problem, i), joint_length(problem, i), c.h);
     const double curved = (all ? j.second : std::max(j.second, 0.0)) / 4;
     const double slope = -j.first / 2;  // derivative of the potential by cos alpha
-    const Eigen::Matrix3d beside_u = one - c.u * c.u.transpose();
+    const Eigen::Matrix3d projector = one - c.u * c.u.transpose();
     const Eigen::Matrix3d beside_v = one - c.v * c.v.transpose();
     // h is |v - u|^2 / 4. The part of its second derivative from first-order changes of u and v is
     // never negative.
-    Eigen::Matrix3d of_u = beside_u / c.a;
+    Eigen::Matrix3d of_u = projector / c.a;
     Eigen::Matrix3d of_v = beside_v / c.b;
     if (all) {
       const double cosine = 1 - 2 * c.h;
-      of_u = c.u * c.by_a.transpose() + c.by_a * c.u.transpose() + cosine / c.a * beside_u;
+      of_u = c.u * c.by_a.transpose() + c.by_a * c.u.transpose() + cosine / c.a * projector;
       of_v = c.v * c.by_b.transpose() + c.by_b * c.v.transpose() + cosine / c.b * beside_v;
     }
     Eigen::Matrix3d aa = curved * c.by_a * c.by_a.transpose() - slope / c.a * of_u;
     Eigen::Matrix3d bb = curved * c.by_b * c.by_b.transpose() - slope / c.b * of_v;
     const Eigen::Matrix3d ab =
-        curved * c.by_a * c.by_b.transpose() + slope / (c.a * c.b) * beside_u * beside_v;
+        curved * c.by_a * c.by_b.transpose() + slope / (c.a * c.b) * projector * beside_v;
     if (all && problem.natural_turns.size() > 0) {
       const double couple = natural_turn(problem, i).couple;
-      aa += couple * second_of_angle(c.u, c.a);
-      bb -= couple * second_of_angle(c.v, c.b);
+      aa += couple * angle_hessian(c.u, c.a);
+      bb -= couple * angle_hessian(c.v, c.b);
     }
     add_difference_block(i - 1, i - 1, aa, add);
     add_difference_block(i, i, bb, add);

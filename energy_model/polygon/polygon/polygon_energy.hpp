@@ -26,7 +26,7 @@ enum class HessianTerms {
   /// segments, of moments of joints and of forces of round obstacles. Far from equilibrium these
   /// terms are the largest and the least informative (as in projected Newton methods for cloth:
   /// Teran et al., 2005).
-  stiffening,
+  positive_terms,
 };
 
 /// Computes the Hessian of polygon_energy(), without the part of twist_columns().
@@ -102,8 +102,8 @@ class PolygonFactor {
 
   Eigen::MatrixXd factor_;  // D in the first row, L below
   Eigen::MatrixXd B_;
-  Eigen::MatrixXd carried_;  // (A + shift)^-1 B
-  Eigen::PartialPivLU<Eigen::MatrixXd> small_;
+  Eigen::MatrixXd solved_columns_;  // (A + shift)^-1 B
+  Eigen::PartialPivLU<Eigen::MatrixXd> capacitance_;
 };
 
 /// Checks the arguments of solve_polygon().

@@ -29,12 +29,12 @@ bool PolygonFactor::compute(const Eigen::MatrixXd& band, const Eigen::MatrixXd& 
   if (!pivots.isFinite().all() || (pivots == 0).any()) return false;
   Eigen::Index positive = (pivots > 0).count();
   if (B_.cols() == 0) return positive == band.cols();
-  carried_ = B_;
-  for (Eigen::Index k = 0; k < B_.cols(); ++k) solve_banded(carried_.col(k));
-  Eigen::MatrixXd small = B_.transpose() * carried_;
+  solved_columns_ = B_;
+  for (Eigen::Index k = 0; k < B_.cols(); ++k) solve_banded(solved_columns_.col(k));
+  Eigen::MatrixXd small = B_.transpose() * solved_columns_;
   small.diagonal().array() += 1;
   if (!small.allFinite()) return false;
-  small_.compute(small);
+  capacitance_.compute(small);
   const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> spectrum(small, Eigen::EigenvaluesOnly);
   positive += (spectrum.eigenvalues().array() < 0).count();
   return positive == band.cols();
@@ -43,8 +43,8 @@ bool PolygonFactor::compute(const Eigen::MatrixXd& band, const Eigen::MatrixXd& 
 Eigen::VectorXd PolygonFactor::solve(Eigen::VectorXd right) {
   solve_banded(right);
   if (B_.cols() == 0) return right;
-  const Eigen::VectorXd across = small_.solve(B_.transpose() * right);
-  right.noalias() -= carried_ * across;
+  const Eigen::VectorXd across = capacitance_.solve(B_.transpose() * right);
+  right.noalias() -= solved_columns_ * across;
   return right;
 }
 

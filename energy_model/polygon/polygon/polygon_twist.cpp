@@ -53,15 +53,15 @@ void add_angle_gradient(const PolygonTwist& twist, double factor, const Points& 
 }  // namespace
 
 double polygon_twist_angle(const PolygonTwist& twist, const Points& points) {
-  Eigen::Quaterniond brought = Eigen::Quaterniond::Identity();
+  Eigen::Quaterniond transport = Eigen::Quaterniond::Identity();
   Eigen::Vector3d t = unit_segment(points, twist.first_segment);
   const Eigen::Vector3d first = twist.first_d1 - twist.first_d1.dot(t) * t;
   for (Eigen::Index k = twist.first_segment + 1; k <= twist.last_segment; ++k) {
     const Eigen::Vector3d next = unit_segment(points, k);
-    brought = Eigen::Quaterniond::FromTwoVectors(t, next) * brought;
+    transport = Eigen::Quaterniond::FromTwoVectors(t, next) * transport;
     t = next;
   }
-  const Eigen::Vector3d d = brought.normalized() * first;
+  const Eigen::Vector3d d = transport.normalized() * first;
   const double angle = std::atan2(t.cross(d).dot(twist.last_d1), d.dot(twist.last_d1));
   return angle + 2 * std::numbers::pi * std::round((twist.angle - angle) / (2 * std::numbers::pi));
 }

@@ -14,14 +14,14 @@ namespace dlo::energy_model {
 namespace {
 
 /// Size of the first and of the longest continuation step: change of the largest twist angle [rad].
-constexpr double first_turning = 0.25;
-constexpr double longest_turning = 1;
+constexpr double first_twist_step = 0.25;
+constexpr double longest_twist_step = 1;
 /// Displacement of a point, divided by the length, above which a step is repeated with a smaller
-/// size. A step of at most `turning_at_jump` is accepted: a shape that still moves as far has
+/// size. A step of at most `twist_step_at_jump` is accepted: a shape that still moves as far has
 /// jumped to another branch.
 constexpr double longest_movement = 0.05;
-constexpr double turning_at_jump = 0.02;
-constexpr double least_turning = 1e-4;
+constexpr double twist_step_at_jump = 0.02;
+constexpr double least_twist_step = 1e-4;
 
 /// Intermediate problems between no twist and the prescribed twist.
 class TwistHomotopy {
@@ -48,9 +48,9 @@ class TwistHomotopy {
       PolygonTwist& twist = problem.twists[k];
       const bool follows = k > 0 && problem.twists[k - 1].last_segment == twist.first_segment;
       if (!follows) turned = 0;
-      twist.first_d1 = turned_back(twist.first_segment, (1 - to) * turned) * twist.first_d1;
+      twist.first_d1 = inverse_rotation(twist.first_segment, (1 - to) * turned) * twist.first_d1;
       turned += angles_[k];
-      twist.last_d1 = turned_back(twist.last_segment, (1 - to) * turned) * twist.last_d1;
+      twist.last_d1 = inverse_rotation(twist.last_segment, (1 - to) * turned) * twist.last_d1;
       twist.angle = now[k] + (to - from) * angles_[k];
     }
     return problem;
@@ -58,7 +58,7 @@ class TwistHomotopy {
 
  private:
   /// Returns the rotation about a held segment by minus an angle.
-  [[nodiscard]] Eigen::AngleAxisd turned_back(Eigen::Index segment, double angle) const {
+  [[nodiscard]] Eigen::AngleAxisd inverse_rotation(Eigen::Index segment, double angle) const {
     Eigen::Vector3d along = Eigen::Vector3d::Zero();
     for (const HeldPoint& held : last_.held) {
       if (held.point == segment) along -= held.position;
@@ -89,10 +89,10 @@ PolygonResult twist_polygon(const PolygonProblem& problem,
   now.twists.assign(problem.twists.size(), 0);
   Eigen::Matrix3Xd slope;  // derivative of the points by the share of the twist; empty after a jump
   double part = 0;
-  double turning = first_turning;
+  double turning = first_twist_step;
   while (part < 1) {
     const double next = std::min(1.0, part + turning / std::max(turning, homotopy.length()));
-    const PolygonProblem there = homotopy.at(next, now.twists, part);
+    const PolygonProblem next_problem = homotopy.at(next, now.twists, part);
     step_options.time_limit = deadline.remaining();
     step_options.max_evaluations = options.max_evaluations - now.evaluations;
     if (step_options.time_limit <= 0 || step_options.max_evaluations < 1) {
@@ -102,18 +102,18 @@ PolygonResult twist_polygon(const PolygonProblem& problem,
     }
     const Eigen::Matrix3Xd from =
         slope.cols() > 0 ? Eigen::Matrix3Xd(now.points + (next - part) * slope) : now.points;
-    PolygonResult found = solve_polygon(there, from, step_options);
+    PolygonResult found = solve_polygon(next_problem, from, step_options);
     const double moved = (found.points - now.points).colwise().norm().maxCoeff() / length;
     now.evaluations += found.evaluations;
     const bool jumped = !(moved <= longest_movement);
     slope.resize(3, 0);
-    if (succeeded(found.status) && (!jumped || turning <= turning_at_jump)) {
+    if (succeeded(found.status) && (!jumped || turning <= twist_step_at_jump)) {
       if (!jumped) slope = (found.points - now.points) / (next - part);
       found.evaluations = now.evaluations;
       now = std::move(found);
       part = next;
-      turning = std::min(longest_turning, 1.5 * turning);
-    } else if (turning > least_turning) {
+      turning = std::min(longest_twist_step, 1.5 * turning);
+    } else if (turning > least_twist_step) {
       turning /= 3;
     } else {
       now.status = found.status;

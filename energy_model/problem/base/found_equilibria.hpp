@@ -24,8 +24,8 @@ template <typename Shape>
 /// that a minimum has been missed; null if there is none.
 /// @param left  energies of the shapes to exclude: the saddles that have already been left
 template <typename Shape>
-[[nodiscard]] const Shape* missed_minimum(const std::vector<Shape>& found,
-                                          const std::vector<double>& left) {
+[[nodiscard]] const Shape* saddle_below_minima(const std::vector<Shape>& found,
+                                               const std::vector<double>& left) {
   const double bound = lowest_stable_energy(found);
   const Shape* lowest = nullptr;
   for (const Shape& shape : found) {
@@ -76,7 +76,7 @@ struct Combinations {
 }
 
 /// End of a message about a shape that couples bend.
-inline constexpr const char* in_the_plane =
+inline constexpr const char* planar_check_note =
     "; checked in the plane alone, because a couple has no potential out of it";
 
 }  // namespace dlo::energy_model

@@ -11,7 +11,7 @@
 namespace dlo::energy_model {
 namespace {
 
-struct Call {
+struct NloptCall {
   const Objective* objective;
   nlopt_opt optimiser;
   const MinimiseOptions* options;
@@ -26,7 +26,7 @@ struct Call {
 /// Evaluates the objective for NLopt. Exceptions must not cross NLopt, which is C: an exception of
 /// the objective is stored and stops NLopt.
 double evaluate(unsigned n, const double* x, double* gradient, void* data) {
-  auto& call = *static_cast<Call*>(data);
+  auto& call = *static_cast<NloptCall*>(data);
   if (call.thrown) return NAN;
   try {
     ++call.evaluations;
@@ -51,11 +51,11 @@ double evaluate(unsigned n, const double* x, double* gradient, void* data) {
 
 /// Returns the number of steps that L-BFGS stores. NLopt stores two vectors of n numbers for each
 /// step, in one block whose size is counted in an int.
-unsigned remembered_steps(const MinimiseOptions& options, unsigned n) {
+unsigned stored_steps(const MinimiseOptions& options, unsigned n) {
   constexpr unsigned most_numbers = 1U << 24U;  // 128 MB in each of the two halves
   constexpr unsigned fewest_steps = 8;
   const unsigned wanted =
-      options.remembered_steps > 0 ? static_cast<unsigned>(options.remembered_steps) : n;
+      options.stored_steps > 0 ? static_cast<unsigned>(options.stored_steps) : n;
   return std::min(wanted, std::max(fewest_steps, most_numbers / std::max(n, 1U)));
 }
 
@@ -93,15 +93,15 @@ MinimiseResult minimise_lbfgs(const Objective& objective, Eigen::VectorXd& x,
   const auto n = static_cast<unsigned>(x.size());
   const std::unique_ptr<nlopt_opt_s, decltype(&nlopt_destroy)> optimiser(
       nlopt_create(NLOPT_LD_LBFGS, n), nlopt_destroy);
-  Call call{.objective = &objective,
-            .optimiser = optimiser.get(),
-            .options = &options,
-            .gradient = Eigen::VectorXd(x.size()),
-            .best = Eigen::VectorXd(x.size()),
-            .thrown = nullptr};
+  NloptCall call{.objective = &objective,
+                 .optimiser = optimiser.get(),
+                 .options = &options,
+                 .gradient = Eigen::VectorXd(x.size()),
+                 .best = Eigen::VectorXd(x.size()),
+                 .thrown = nullptr};
   nlopt_set_min_objective(optimiser.get(), evaluate, &call);
   nlopt_set_maxeval(optimiser.get(), options.max_evaluations);
-  nlopt_set_vector_storage(optimiser.get(), remembered_steps(options, n));
+  nlopt_set_vector_storage(optimiser.get(), stored_steps(options, n));
   double minimum = 0;
   const nlopt_result code = nlopt_optimize(optimiser.get(), x.data(), &minimum);
   if (call.thrown) std::rethrow_exception(call.thrown);

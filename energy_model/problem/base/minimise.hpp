@@ -17,7 +17,7 @@ struct MinimiseOptions {
   double gradient_tolerance = 0;  ///< Euclidean norm of the gradient at which the minimisation ends
   int max_evaluations = 0;
   /// Steps that L-BFGS stores; 0: as many as unknowns, which needs fewer but slower steps.
-  int remembered_steps = 0;
+  int stored_steps = 0;
   /// Checked at every evaluation; a minimisation that reaches it returns `time_limit`.
   Deadline deadline{};
 };
@@ -29,7 +29,7 @@ struct [[nodiscard]] MinimiseResult {
 
   /// Whether Newton's method may start from the point, or a residual may prove it to be good
   /// enough. A failed line search may mean that rounding left no descent, or anything else.
-  [[nodiscard]] bool is_a_start() const {
+  [[nodiscard]] bool is_usable_start() const {
     return succeeded(status) || status == SolveStatus::not_verified;
   }
 };

@@ -52,7 +52,7 @@ inline Eigen::Matrix3d transported(const Eigen::Matrix3d& frame, const Eigen::Ve
 }
 
 /// Returns the Hessian of g . p with respect to a spin of the director p: sym(g p^T) - (g.p) 1.
-inline Eigen::Matrix3d spin_curvature(const Eigen::Vector3d& p, const Eigen::Vector3d& g) {
+inline Eigen::Matrix3d spin_hessian(const Eigen::Vector3d& p, const Eigen::Vector3d& g) {
   Eigen::Matrix3d a = (g * p.transpose() + p * g.transpose()) / 2;
   a.diagonal().array() -= g.dot(p);
   return a;

@@ -20,9 +20,9 @@ constexpr double negligible_share = 1e-4;
 
 /// Integrates the forces and moments of distributed actions: weight, line loads and drag in the
 /// first column, yielding obstacles in one column each; moments about the first grip.
-class SpreadActions {
+class DistributedActions {
  public:
-  SpreadActions(const Problem& problem, const Equilibrium& shape)
+  DistributedActions(const Problem& problem, const Equilibrium& shape)
       : problem_(problem),
         shape_(shape),
         origin_(problem.grips.front().position),
@@ -43,7 +43,7 @@ class SpreadActions {
     constexpr int most_halvings = 24;
     constexpr std::size_t most_panels = 512;  // a shape of noise would not be resolved by more
     std::vector<Panel> panels;
-    const std::vector<double> cuts = kinks_of(problem_, shape_.contacts);
+    const std::vector<double> cuts = kink_positions(problem_, shape_.contacts);
     for (std::size_t i = 0; i + 1 < cuts.size(); ++i) {
       panels.push_back({cuts[i], cuts[i + 1] - cuts[i], {}, false});
     }
@@ -268,7 +268,7 @@ Imbalance imbalance_of(const Problem& problem, const Equilibrium& shape) {
     actions.push_back({samples.points.col(column++), part.force, part.moment});
     differences[part.obstacle] -= part.force;
   }
-  const SpreadActions spread(problem, shape);
+  const DistributedActions spread(problem, shape);
   const std::vector<Action> sums = spread.integrate(samples.points.rightCols<1>());
   actions.insert(actions.end(), sums.begin(), sums.end());
   for (std::size_t i = 0; i < spread.yielding().size(); ++i) {

@@ -33,14 +33,14 @@ double root_of_sinh_ratio(double excess) {
 
 double Catenary::own(double s) const {
   if (s < low) return s - low;
-  return std::max(0.0, s - low - lying);
+  return std::max(0.0, s - low - lying_length);
 }
 
 double Catenary::height(double s) const { return std::hypot(a, own(s)); }
 
 Vector Catenary::point(double s) const {
   const double q = own(s);
-  const double x = std::clamp(s - low, 0.0, lying) + (a > 0 ? a * std::asinh(q / a) : 0.0);
+  const double x = std::clamp(s - low, 0.0, lying_length) + (a > 0 ? a * std::asinh(q / a) : 0.0);
   return origin + x * level + (std::hypot(a, q) - a) * up;
 }
 
@@ -50,7 +50,7 @@ Vector Catenary::tangent(double s) const {
 }
 
 Vector Catenary::curvature(double s) const {
-  if (a == 0 || lies(s)) return Vector::Zero();
+  if (a == 0 || is_lying(s)) return Vector::Zero();
   const double y = height(s);
   return a / (y * y) * (a * up - own(s) * level) / y;
 }
@@ -65,16 +65,16 @@ double Catenary::bend_integral(double q) const {
   return (q / (a * a + q * q) + std::atan(q / a) / a) / 2;
 }
 
-std::optional<Catenary> hang_between(const Vector& begin, const Vector& end, double l,
-                                     const Vector& up) {
-  const Vector way = end - begin;
-  const double rise = way.dot(up);
-  const Vector flat = way - rise * up;
+std::optional<Catenary> hanging_catenary(const Vector& begin, const Vector& end, double l,
+                                         const Vector& up) {
+  const Vector chord = end - begin;
+  const double rise = chord.dot(up);
+  const Vector flat = chord - rise * up;
   const double x = flat.norm();
-  if (!(x > negligible_length * l) || !(way.norm() < l * (1 - negligible_length)))
+  if (!(x > negligible_length * l) || !(chord.norm() < l * (1 - negligible_length)))
     return std::nullopt;
   const double ratio = std::sqrt((l - rise) * (l + rise)) / x;
-  const double excess = (l - way.norm()) * (l + way.norm()) / (x * x * (ratio + 1));
+  const double excess = (l - chord.norm()) * (l + chord.norm()) / (x * x * (ratio + 1));
   const double u = root_of_sinh_ratio(excess);
   Catenary line;
   line.a = x / (2 * u);
@@ -87,10 +87,10 @@ std::optional<Catenary> hang_between(const Vector& begin, const Vector& end, dou
   return line;
 }
 
-std::optional<Catenary> lie_between(const Vector& begin, const Vector& end, double l,
-                                    const Vector& up, double floor) {
-  const Vector way = end - begin;
-  const Vector flat = way - way.dot(up) * up;
+std::optional<Catenary> catenary_on_floor(const Vector& begin, const Vector& end, double l,
+                                          const Vector& up, double floor) {
+  const Vector chord = end - begin;
+  const Vector flat = chord - chord.dot(up) * up;
   const double x = flat.norm();
   if (!(x > negligible_length * l)) return std::nullopt;
   const std::array<double, 2> heights = {std::max(0.0, begin.dot(up) - floor),
@@ -118,8 +118,8 @@ std::optional<Catenary> lie_between(const Vector& begin, const Vector& end, doub
   line.level = flat / x;
   line.up = up;
   line.low = length(heights[0], line.a);
-  line.lying = l - line.low - length(heights[1], line.a);
-  if (!(line.lying > 0)) return std::nullopt;
+  line.lying_length = l - line.low - length(heights[1], line.a);
+  if (!(line.lying_length > 0)) return std::nullopt;
   line.origin = begin + reach(heights[0], line.a) * line.level - heights[0] * up;
   return line;
 }

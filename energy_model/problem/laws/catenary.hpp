@@ -14,18 +14,18 @@ inline constexpr double negligible_length = 1e-9;
 /// from the lowest point,
 ///     height = (a^2 + q^2)^(1/2),  x = a asinh(q / a).
 struct Catenary {
-  double a = 0;            ///< T / w at the lowest point [m]; 0: a line that hangs straight
-  double low = 0;          ///< s of the lowest point [m]; beyond an end if the line rises all along
-  double lying = 0;        ///< length of the part from `low` on that lies [m]
-  Eigen::Vector3d origin;  ///< lowest point [m]
-  Eigen::Vector3d level;   ///< horizontal unit vector along growing s
-  Eigen::Vector3d up;      ///< vertical unit vector
+  double a = 0;    ///< T / w at the lowest point [m]; 0: a line that hangs straight
+  double low = 0;  ///< s of the lowest point [m]; beyond an end if the line rises all along
+  double lying_length = 0;  ///< length of the part from `low` on that lies [m]
+  Eigen::Vector3d origin;   ///< lowest point [m]
+  Eigen::Vector3d level;    ///< horizontal unit vector along growing s
+  Eigen::Vector3d up;       ///< vertical unit vector
 
   /// Returns the arc length from the lowest point, or from the end of the part that lies [m].
   [[nodiscard]] double own(double s) const;
   /// Returns T / w [m], which is the height above the line's directrix.
   [[nodiscard]] double height(double s) const;
-  [[nodiscard]] bool lies(double s) const { return s > low && s < low + lying; }
+  [[nodiscard]] bool is_lying(double s) const { return s > low && s < low + lying_length; }
   [[nodiscard]] Eigen::Vector3d point(double s) const;
   [[nodiscard]] Eigen::Vector3d tangent(double s) const;
   /// Returns the derivative of the tangent by s [1/m]; zero on the part that lies.
@@ -39,15 +39,15 @@ struct Catenary {
 /// Computes the catenary of length l between two points; std::nullopt if they are above each other
 /// or at least l apart.
 /// @param up  vertical unit vector
-[[nodiscard]] std::optional<Catenary> hang_between(const Eigen::Vector3d& begin,
-                                                   const Eigen::Vector3d& end, double l,
-                                                   const Eigen::Vector3d& up);
+[[nodiscard]] std::optional<Catenary> hanging_catenary(const Eigen::Vector3d& begin,
+                                                       const Eigen::Vector3d& end, double l,
+                                                       const Eigen::Vector3d& up);
 
 /// Computes the catenary of length l between two points on a floor that carries its lowest part;
 /// std::nullopt if the floor carries none of it, or if the points are above each other.
 /// @param floor  height of the floor along `up` [m]
-[[nodiscard]] std::optional<Catenary> lie_between(const Eigen::Vector3d& begin,
-                                                  const Eigen::Vector3d& end, double l,
-                                                  const Eigen::Vector3d& up, double floor);
+[[nodiscard]] std::optional<Catenary> catenary_on_floor(const Eigen::Vector3d& begin,
+                                                        const Eigen::Vector3d& end, double l,
+                                                        const Eigen::Vector3d& up, double floor);
 
 }  // namespace dlo::energy_model

@@ -27,7 +27,7 @@ using Vector = Eigen::Vector3d;
 /// is undetermined.
 constexpr double largest_clamp_angle = 170 * std::numbers::pi / 180;
 /// Distance in layer lengths after which a layer has decayed: exp(-40) = 4e-18.
-constexpr double layer_reach = 40;
+constexpr double layer_decay_lengths = 40;
 /// Largest error_estimate divided by the length with which a soft line is returned. The models' own
 /// estimates are lower where they succeed.
 constexpr double most_error = 1e-7;
@@ -46,7 +46,7 @@ struct Layer {
     return 4 * std::atan(std::tan(turn / 4) * std::exp(-sigma / length));
   }
   /// Returns the vector from the asymptote to the rod [m] where the angle is `angle`.
-  [[nodiscard]] Vector way(double angle) const {
+  [[nodiscard]] Vector displacement(double angle) const {
     return 2 * length * ((1 - std::cos(angle / 2)) * along - std::sin(angle / 2) * across);
   }
   [[nodiscard]] Vector axis() const { return along.cross(across); }
@@ -57,7 +57,8 @@ struct Composite {
   Catenary line;
   std::vector<Layer> layers;
   double length = 0;
-  double edge_layer = 0;  // length of the layer in which the rod bends where it lifts off [m]
+  double free_boundary_layer =
+      0;  // length of the layer in which the rod bends where it lifts off [m]
 
   struct Place {
     Vector point, tangent, curvature;
@@ -65,10 +66,10 @@ struct Composite {
 
   [[nodiscard]] Place at(double s) const {
     Place place{line.point(s), line.tangent(s), line.curvature(s)};
-    if (line.lying > 0) lift(s, place.curvature);
+    if (line.lying_length > 0) smooth_free_boundary(s, place.curvature);
     for (const Layer& layer : layers) {
       const double sigma = layer.at_end ? length - s : s;
-      if (sigma > layer_reach * layer.length) continue;
+      if (sigma > layer_decay_lengths * layer.length) continue;
       if (!layer.clamped) {
         place.curvature *= -std::expm1(-sigma / layer.length);
         continue;
@@ -76,7 +77,7 @@ struct Composite {
       const double angle = layer.angle(sigma);
       const double rate = (layer.at_end ? 2 : -2) * std::sin(angle / 2) / layer.length;
       const Eigen::AngleAxisd turn(angle, layer.axis());
-      place.point += layer.way(angle);
+      place.point += layer.displacement(angle);
       place.tangent = turn * place.tangent;
       place.curvature = turn * place.curvature + rate * layer.axis().cross(place.tangent);
     }
@@ -85,13 +86,14 @@ struct Composite {
 
   /// Makes the curvature grow from zero where the rod lifts off, instead of the jump of the
   /// catenary.
-  void lift(double s, Vector& curvature) const {
+  void smooth_free_boundary(double s, Vector& curvature) const {
     for (const double sign : {-1.0, 1.0}) {
-      const double off = sign < 0 ? line.low + edge_layer : line.low + line.lying - edge_layer;
-      const double beyond = sign * (s - off);
-      if (!(beyond > 0) || beyond > layer_reach * edge_layer) continue;
-      const Vector full = line.lies(s) ? Vector(line.up / line.a) : curvature;
-      curvature = -std::expm1(-beyond / edge_layer) * full;
+      const double layer_begin = sign < 0 ? line.low + free_boundary_layer
+                                          : line.low + line.lying_length - free_boundary_layer;
+      const double beyond = sign * (s - layer_begin);
+      if (!(beyond > 0) || beyond > layer_decay_lengths * free_boundary_layer) continue;
+      const Vector full = line.is_lying(s) ? Vector(line.up / line.a) : curvature;
+      curvature = -std::expm1(-beyond / free_boundary_layer) * full;
     }
   }
 
@@ -104,18 +106,19 @@ struct Composite {
     };
     constexpr double tolerance = 1e-14;
     Composite shape = *this;
-    std::vector<double> way(3, 0.0);
-    if (!integrate(tangent, &shape, 1, tolerance, way)) return INFINITY;
-    return (at(0).point + length * Eigen::Map<const Vector>(way.data()) - at(length).point).norm();
+    std::vector<double> displacement(3, 0.0);
+    if (!integrate(tangent, &shape, 1, tolerance, displacement)) return INFINITY;
+    return (at(0).point + length * Eigen::Map<const Vector>(displacement.data()) - at(length).point)
+        .norm();
   }
 };
 
-class SoftLine {
+class CatenaryLimit {
  public:
-  explicit SoftLine(const Problem& problem) : problem_(problem) {}
+  explicit CatenaryLimit(const Problem& problem) : problem_(problem) {}
 
   std::optional<Equilibrium> solve() {
-    if (!is_taken()) return std::nullopt;
+    if (!is_applicable()) return std::nullopt;
     weight_ = problem_.weight_per_length.norm();
     up_ = -problem_.weight_per_length / weight_;
     for (std::size_t i = 0; i < problem_.grips.size(); ++i) {
@@ -134,7 +137,7 @@ class SoftLine {
   }
 
  private:
-  [[nodiscard]] bool is_taken() const {
+  [[nodiscard]] bool is_applicable() const {
     const double l = problem_.length;
     const auto at_end = [&](const Grip& grip) {
       return grip.at < negligible_length * l || grip.at > l * (1 - negligible_length);
@@ -166,7 +169,8 @@ class SoftLine {
 
   /// Returns the point at which the catenary begins, where the asymptote of a layer ends [m].
   [[nodiscard]] Vector begin_of(const Layer& layer) const {
-    return grip_of(layer).position - (layer.length > 0 ? layer.way(layer.turn) : Vector::Zero());
+    return grip_of(layer).position -
+           (layer.length > 0 ? layer.displacement(layer.turn) : Vector::Zero());
   }
 
   bool find_catenary() {
@@ -176,7 +180,7 @@ class SoftLine {
       const Layer& layer = layers_.front();
       line_ = {.a = 0,
                .low = layer.at_end ? 0.0 : l,
-               .lying = 0,
+               .lying_length = 0,
                .origin = begin_of(layer) - l * up_,
                .level = up_.unitOrthogonal(),
                .up = up_};
@@ -184,7 +188,7 @@ class SoftLine {
     }
     const Vector begin = begin_of(layers_[layers_[0].at_end ? 1 : 0]);
     const Vector end = begin_of(layers_[layers_[0].at_end ? 0 : 1]);
-    const std::optional<Catenary> free = hang_between(begin, end, l, up_);
+    const std::optional<Catenary> free = hanging_catenary(begin, end, l, up_);
     if (!free) return false;
     line_ = *free;
     if (problem_.obstacles.empty()) return true;
@@ -192,7 +196,7 @@ class SoftLine {
     if (!ground) return false;
     const double lowest = line_.point(std::clamp(line_.low, 0.0, l)).dot(up_);
     if (lowest > *ground + negligible_length * l) return true;
-    const std::optional<Catenary> lying = lie_between(begin, end, l, up_, *ground);
+    const std::optional<Catenary> lying = catenary_on_floor(begin, end, l, up_, *ground);
     if (!lying) return false;
     line_ = *lying;
     return true;
@@ -207,14 +211,14 @@ class SoftLine {
     layer.turn = 0;
     layer.across = layer.along.unitOrthogonal();
     if (!layer.clamped) return;
-    const Vector held = sign * grip_of(layer).direction->normalized();
-    const Vector across = held - held.dot(layer.along) * layer.along;
-    layer.turn = std::atan2(across.norm(), held.dot(layer.along));
+    const Vector direction = sign * grip_of(layer).direction->normalized();
+    const Vector across = direction - direction.dot(layer.along) * layer.along;
+    layer.turn = std::atan2(across.norm(), direction.dot(layer.along));
     if (across.norm() > 0) layer.across = across.normalized();
   }
 
   /// Returns the length of the layer in which the rod bends where it lifts off [m].
-  [[nodiscard]] double edge_layer() const {
+  [[nodiscard]] double free_boundary_layer() const {
     return line_.a > 0 ? std::sqrt(problem_.bending_stiffness / (weight_ * line_.a)) : 0.0;
   }
 
@@ -224,29 +228,30 @@ class SoftLine {
     const std::optional<double> ground = floor();
     for (const Layer& layer : layers_) {
       if (!(layer.turn < largest_clamp_angle)) return false;
-      if (!(2 * layer_reach * layer.length < problem_.length)) return false;
+      if (!(2 * layer_decay_lengths * layer.length < problem_.length)) return false;
       const double above = ground ? grip_of(layer).position.dot(up_) - *ground : 1.0;
       if (!ground) continue;
-      const bool lies_there = line_.lies(layer.at_end ? problem_.length * (1 - 1e-15) : 1e-300) ||
-                              line_.own(at(layer)) == 0;
-      if (lies_there) {
+      const bool is_lying = line_.is_lying(layer.at_end ? problem_.length * (1 - 1e-15) : 1e-300) ||
+                            line_.own(at(layer)) == 0;
+      if (is_lying) {
         // The end has to be on the floor and along it.
         if (std::abs(above) > negligible_length * problem_.length || layer.turn > negligible_length)
           return false;
-      } else if (!(above > layer_reach * layer.length)) {
+      } else if (!(above > layer_decay_lengths * layer.length)) {
         return false;
       }
     }
-    const bool lies = line_.lying > 0;
-    if (lies) return line_.lying > 2 * layer_reach * edge_layer();
+    const bool lies = line_.lying_length > 0;
+    if (lies) return line_.lying_length > 2 * layer_decay_lengths * free_boundary_layer();
     if (!ground) return true;
     const double l = problem_.length;
-    return line_.point(std::clamp(line_.low, 0.0, l)).dot(up_) > *ground + 10 * edge_layer();
+    return line_.point(std::clamp(line_.low, 0.0, l)).dot(up_) >
+           *ground + 10 * free_boundary_layer();
   }
 
   [[nodiscard]] double error() const {
     const double l = problem_.length;
-    double sum = line_.a > 0 ? 2 * edge_layer() * edge_layer() / line_.a : 0.0;
+    double sum = line_.a > 0 ? 2 * free_boundary_layer() * free_boundary_layer() / line_.a : 0.0;
     for (const Layer& layer : layers_) {
       sum += 2 * layer.length * layer.length * (1 + layer.turn) / line_.height(at(layer));
     }
@@ -258,7 +263,7 @@ class SoftLine {
   [[nodiscard]] std::optional<Equilibrium> result() const {
     const double l = problem_.length;
     const double EI = problem_.bending_stiffness;
-    const Composite shape{line_, layers_, l, edge_layer()};
+    const Composite shape{line_, layers_, l, free_boundary_layer()};
     Equilibrium result;
     result.error_estimate = error();
     result.residual = shape.gap() / l;
@@ -290,7 +295,7 @@ class SoftLine {
       reaction.torque = (layer.at_end ? EI : -EI) * place.tangent.cross(place.curvature);
     }
     result.obstacles.assign(problem_.obstacles.size(), Vector::Zero());
-    if (line_.lying > 0) add_contact(result);
+    if (line_.lying_length > 0) add_contact(result);
     result.sample = [shape](std::span<const double> arc_lengths) {
       Samples samples = sized_samples(arc_lengths, shape.length);
       for (Eigen::Index i = 0; i < samples.points.cols(); ++i) {
@@ -306,17 +311,17 @@ class SoftLine {
 
   /// Adds the contact with the floor. The rod lifts off one layer length before the line does.
   void add_contact(Equilibrium& result) const {
-    const double pressed = weight_ * edge_layer();
-    const double end = line_.low + line_.lying;
+    const double pressed = weight_ * free_boundary_layer();
+    const double end = line_.low + line_.lying_length;
     const bool rises_at_begin = line_.low > 0;
     const bool rises_at_end = end < problem_.length * (1 - negligible_length);
-    result.obstacles.front() = weight_ * line_.lying * up_;
+    result.obstacles.front() = weight_ * line_.lying_length * up_;
     ContactPart part;
     part.kind = ContactKind::lying;
-    part.begin = rises_at_begin ? line_.low + edge_layer() : 0.0;
-    part.end = rises_at_end ? end - edge_layer() : problem_.length;
+    part.begin = rises_at_begin ? line_.low + free_boundary_layer() : 0.0;
+    part.end = rises_at_end ? end - free_boundary_layer() : problem_.length;
     part.force = result.obstacles.front();
-    part.moment = (line_.point(line_.low + line_.lying / 2) - line_.point(part.begin))
+    part.moment = (line_.point(line_.low + line_.lying_length / 2) - line_.point(part.begin))
                       // Moment of the weight about the begin, at the middle of the part that lies.
                       .cross(part.force);
     part.begin_force = rises_at_begin ? pressed : 0.0;
@@ -340,21 +345,21 @@ class SoftLine {
 
 }  // namespace
 
-bool is_soft_line(const Problem& problem) {
+bool is_catenary_limit(const Problem& problem) {
   const double l = problem.length;
-  return l > 0 &&
-         problem.bending_stiffness < line_stiffness * problem.weight_per_length.norm() * l * l * l;
+  return l > 0 && problem.bending_stiffness <
+                      catenary_limit_stiffness * problem.weight_per_length.norm() * l * l * l;
 }
 
-std::optional<Equilibrium> soft_line(const Problem& problem) {
+std::optional<Equilibrium> catenary_limit(const Problem& problem) {
   check(problem);
-  return SoftLine(problem).solve();
+  return CatenaryLimit(problem).solve();
 }
 
-std::optional<Equilibrium> line_without_search(const Problem& problem) {
+std::optional<Equilibrium> shape_without_search(const Problem& problem) {
   std::optional<Equilibrium> line = taut_line(problem);
-  if (!line && is_soft_line(problem)) {
-    line = soft_line(problem);
+  if (!line && is_catenary_limit(problem)) {
+    line = catenary_limit(problem);
     if (line && !(line->error_estimate <= most_error)) line.reset();
   }
   if (line) judge_balance(problem, *line, std::max(allowed_imbalance, line->error_estimate));

@@ -59,7 +59,7 @@ class TautLine {
 
   /// Distributes a force between the two adjacent grips.
   /// @param force  force on the line at s, between grips i and i + 1
-  void carry(const Eigen::Vector3d& force, double s, std::size_t i) {
+  void distribute_force(const Eigen::Vector3d& force, double s, std::size_t i) {
     const double share = (s - grip(i).at) / (grip(i + 1).at - grip(i).at);
     result_.grips[along_[i].index].force -= (1 - share) * force;
     result_.grips[along_[i + 1].index].force -= share * force;
@@ -85,7 +85,7 @@ class TautLine {
         const Eigen::Vector3d force =
             (end - begin) / 2 * (part.weight_per_length + (s - part.begin) * part.weight_slope);
         require_along(force, s);
-        carry(force, s, i);
+        distribute_force(force, s, i);
         result_.energy.gravity -= force.dot(point(s) - problem_.grips.front().position);
       }
     }
@@ -93,7 +93,7 @@ class TautLine {
 
   void add_load(const Load& load) {
     result_.energy.load -= load.force.dot(point(load.at) - problem_.grips.front().position);
-    const std::optional<std::size_t> clamp = clamp_under(problem_, load);
+    const std::optional<std::size_t> clamp = clamp_at_load(problem_, load);
     require(clamp || load.torque.isZero(0), "Problem", "arc length of a couple on a taut rod",
             load.at,
             "the arc length of a clamp: the share of each grip in a couple depends on the tension, "
@@ -107,7 +107,7 @@ class TautLine {
     require_along(load.force, load.at);
     std::size_t i = 0;
     while (grip(i + 1).at < load.at) ++i;
-    carry(load.force, load.at, i);
+    distribute_force(load.force, load.at, i);
   }
 
   void add_twist() {
@@ -171,10 +171,10 @@ bool is_taut_line(const Problem& problem) {
   if (first.at > rounding || along.back().grip->at < problem.length - rounding) {
     return false;
   }
-  const Eigen::Vector3d way = along.back().grip->position - first.position;
-  if (!(std::abs(way.norm() - problem.length) <= rounding)) return false;
+  const Eigen::Vector3d chord = along.back().grip->position - first.position;
+  if (!(std::abs(chord.norm() - problem.length) <= rounding)) return false;
   return std::all_of(problem.grips.begin(), problem.grips.end(), [&](const Grip& grip) {
-    const Eigen::Vector3d there = first.position + (grip.at - first.at) / problem.length * way;
+    const Eigen::Vector3d there = first.position + (grip.at - first.at) / problem.length * chord;
     return (grip.position - there).norm() <= line_rounding * problem.length;
   });
 }

@@ -24,15 +24,15 @@ Eigen::Matrix3d material_frame(const Problem& problem, const OrderedGrip& clamp)
 /// there is `along`. If no clamp holds the start, they are those of a rod in its plane.
 Eigen::Matrix3d directors_at_start(const Problem& problem, const PlacedSpan& placed,
                                    const OrderedGrip& anchor, const Eigen::Vector3d& along) {
-  Eigen::Matrix3d own;
+  Eigen::Matrix3d material_axes;
   if (placed.span.start_direction) {
-    own = placed.frame * material_frame(problem, anchor);
+    material_axes = placed.frame * material_frame(problem, anchor);
   } else {
     const Eigen::Vector3d normal = placed.frame * natural_normal(problem).value();
-    own << normal.cross(along), normal, along;
+    material_axes << normal.cross(along), normal, along;
   }
-  if (placed.reversed) own.rightCols<2>() *= -1;
-  return own;
+  if (placed.reversed) material_axes.rightCols<2>() *= -1;
+  return material_axes;
 }
 
 /// Chooses the frame at the start of the span, and the angle by which the rod's directors are ahead
@@ -40,20 +40,20 @@ Eigen::Matrix3d directors_at_start(const Problem& problem, const PlacedSpan& pla
 /// stiffnesses needs a frame along its principal axes: of the four, the one nearest to Span::d1()
 /// is chosen, so that a rod in a plane across one of its axes bends about the first axis of the
 /// frame.
-void place_start_frame(const Eigen::Vector3d& along, const Eigen::Matrix3d& own, bool is_round,
-                       PlacedSpan& placed) {
+void place_start_frame(const Eigen::Vector3d& along, const Eigen::Matrix3d& material_axes,
+                       bool is_round, PlacedSpan& placed) {
   constexpr double rounding = 1e-12;
   Span& span = placed.span;
   const Eigen::Vector3d d1 = Span::d1(along);
-  const Eigen::Matrix3d to_own = frame_along(along, d1).transpose() * own;
+  const Eigen::Matrix3d to_own = frame_along(along, d1).transpose() * material_axes;
   placed.ahead = std::atan2(to_own(1, 0), to_own(0, 0));
   if (is_round) return;
   const double quarters = std::round(placed.ahead / (pi / 2));
-  const double aside = placed.ahead - quarters * pi / 2;
+  const double roll_error = placed.ahead - quarters * pi / 2;
   placed.ahead = quarters * pi / 2;
-  if (std::abs(aside) > rounding) {
+  if (std::abs(roll_error) > rounding) {
     span.planar = false;
-    span.principal_d1 = Eigen::AngleAxisd(aside, along) * frame_along(along, d1).col(0);
+    span.principal_d1 = Eigen::AngleAxisd(roll_error, along) * frame_along(along, d1).col(0);
   }
   if (std::fmod(std::abs(quarters), 2) == 0) return;
   std::swap(span.stiffness[0], span.stiffness[1]);

@@ -13,7 +13,7 @@ namespace {
 constexpr double rounding = 1e-10;
 /// Radius, in lengths of the span, within which the core of a body is used. A rod stays within one
 /// length of the anchor; the margin is 5 %.
-constexpr double beyond_reach = 1.05;
+constexpr double reachable_radius = 1.05;
 
 /// Returns the corners of the core of a body, cut to the part that a point near the anchor can
 /// reach.
@@ -41,7 +41,8 @@ Eigen::Matrix<double, 3, 8> corners_in_reach(const obstacle::Body& body, double 
 /// corners of its core.
 /// @param reach   distance from the anchor within which the core is used, in lengths
 /// @param beyond  distance by which the other body may stick out, in lengths
-bool holds(const Span::Obstacle& outer, const Span::Obstacle& inner, double reach, double beyond) {
+bool contains_body(const Span::Obstacle& outer, const Span::Obstacle& inner, double reach,
+                   double beyond) {
   const Eigen::VectorXd clearances = outer.body.clearances(corners_in_reach(inner.body, reach));
   return clearances.maxCoeff() <= beyond - inner.body.radius();
 }
@@ -50,16 +51,16 @@ bool holds(const Span::Obstacle& outer, const Span::Obstacle& inner, double reac
 /// each other the first stays.
 /// @param preferred  index in the problem of an obstacle that stays in any case
 void remove_contained(Span& span, double beyond, std::optional<std::size_t> preferred) {
-  const double reach = beyond_reach * span.length;
+  const double reach = reachable_radius * span.length;
   std::vector<Span::Obstacle> kept;
   for (const Span::Obstacle& next : span.rigid_obstacles) {
     if (std::ranges::any_of(kept, [&](const Span::Obstacle& obstacle) {
-          return holds(obstacle, next, reach, beyond);
+          return contains_body(obstacle, next, reach, beyond);
         })) {
       continue;
     }
     std::erase_if(kept, [&](const Span::Obstacle& obstacle) {
-      return obstacle.index != preferred && holds(next, obstacle, reach, beyond);
+      return obstacle.index != preferred && contains_body(next, obstacle, reach, beyond);
     });
     kept.push_back(next);
   }

@@ -84,18 +84,18 @@ constexpr double same_arc_length_share = 1e-9;
 std::vector<RodPart> rod_parts(const Problem& problem) {
   std::vector<RodPart> parts;
   double at = 0;
-  const auto fill_to = [&](double end) {
+  const auto add_section_until = [&](double end) {
     if (end > at) {
       parts.push_back({{at, end, problem.bending_stiffness, problem.torsional_stiffness,
                         problem.weight_per_length, problem.bending_stiffness_2}});
     }
   };
   for (const Section& section : problem.sections) {
-    fill_to(section.begin);
+    add_section_until(section.begin);
     parts.push_back({section});
     at = section.end;
   }
-  fill_to(problem.length);
+  add_section_until(problem.length);
   for (const LineLoad& load : problem.line_loads) add_line_load(load, parts);
   return parts;
 }
@@ -109,14 +109,14 @@ double torsional_compliance(const std::vector<RodPart>& parts, double begin, dou
   return compliance;
 }
 
-bool acts_everywhere(const LineLoad& load, const Problem& problem) {
+bool is_uniform_over_rod(const LineLoad& load, const Problem& problem) {
   return load.begin == 0 && load.end == problem.length && load.at_begin == load.at_end;
 }
 
-Eigen::Vector3d weight_everywhere(const Problem& problem) {
+Eigen::Vector3d total_uniform_weight(const Problem& problem) {
   Eigen::Vector3d weight = problem.weight_per_length;
   for (const LineLoad& load : problem.line_loads) {
-    if (acts_everywhere(load, problem)) weight += load.at_begin;
+    if (is_uniform_over_rod(load, problem)) weight += load.at_begin;
   }
   return weight;
 }
@@ -250,19 +250,19 @@ std::vector<OrderedGrip> ordered_grips(const Problem& problem) {
   const std::vector<OrderedGrip> grips = grips_by_arc_length(problem);
   for (std::size_t i = 0; i + 1 < grips.size(); ++i) {
     const double rod = grips[i + 1].grip->at - grips[i].grip->at;
-    const double apart = (grips[i + 1].grip->position - grips[i].grip->position).norm();
-    const bool reaches = apart < rod || problem.axial_stiffness;
+    const double distance = (grips[i + 1].grip->position - grips[i].grip->position).norm();
+    const bool reaches = distance < rod || problem.axial_stiffness;
     if (rod > same_arc_length_share * problem.length && reaches) continue;
     std::ostringstream message;
     message << "Problem: grips at arc lengths " << grips[i].grip->at << " m and "
-            << grips[i + 1].grip->at << " m are " << apart << " m apart, must be less than the "
+            << grips[i + 1].grip->at << " m are " << distance << " m apart, must be less than the "
             << rod << " m of rod between them";
     throw std::invalid_argument(message.str());
   }
   return grips;
 }
 
-std::optional<std::size_t> clamp_under(const Problem& problem, const Load& load) {
+std::optional<std::size_t> clamp_at_load(const Problem& problem, const Load& load) {
   std::optional<std::size_t> nearest;
   double least = same_arc_length_share * problem.length;
   for (std::size_t g = 0; g < problem.grips.size(); ++g) {
@@ -276,7 +276,7 @@ std::optional<std::size_t> clamp_under(const Problem& problem, const Load& load)
 
 void add_loads_on_clamps(const Problem& problem, Equilibrium& result) {
   for (const Load& load : problem.loads) {
-    const std::optional<std::size_t> clamp = clamp_under(problem, load);
+    const std::optional<std::size_t> clamp = clamp_at_load(problem, load);
     if (!clamp) continue;
     const Eigen::Vector3d& position = problem.grips[*clamp].position;
     result.grips[*clamp].force -= load.force;
@@ -285,7 +285,7 @@ void add_loads_on_clamps(const Problem& problem, Equilibrium& result) {
   }
 }
 
-Energies restore(const Problem& problem, const Energies& own_units) {
+Energies to_joules(const Problem& problem, const Energies& own_units) {
   const double unit = bending_unit(problem) / problem.length;
   return {.bending = own_units.bending * unit,
           .twisting = own_units.twisting * unit,
@@ -294,7 +294,8 @@ Energies restore(const Problem& problem, const Energies& own_units) {
           .stretch = own_units.stretch * unit};
 }
 
-std::vector<double> kinks_of(const Problem& problem, const std::vector<ContactPart>& contacts) {
+std::vector<double> kink_positions(const Problem& problem,
+                                   const std::vector<ContactPart>& contacts) {
   std::vector<double> at = {0, problem.length};
   for (const Grip& grip : problem.grips) at.push_back(grip.at);
   for (const Load& load : problem.loads) at.push_back(load.at);
@@ -312,7 +313,7 @@ void separate_line_loads(const Problem& problem, Equilibrium& result) {
   if (problem.line_loads.empty() || !result.sample) return;
   constexpr int panels = 16;  // per interval between two kinks
   const LegendreTable& rule = legendre_table(6);
-  const std::vector<double> kinks = kinks_of(problem, result.contacts);
+  const std::vector<double> kinks = kink_positions(problem, result.contacts);
   std::vector<double> s;
   std::vector<double> weights;
   for (std::size_t i = 0; i + 1 < kinks.size(); ++i) {

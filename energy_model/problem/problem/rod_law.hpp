@@ -31,11 +31,11 @@ struct RodPart : Section {
                                           double end);
 
 /// Whether a line load is constant along the whole rod.
-[[nodiscard]] bool acts_everywhere(const LineLoad& load, const Problem& problem);
+[[nodiscard]] bool is_uniform_over_rod(const LineLoad& load, const Problem& problem);
 
 /// Returns the weight per length outside sections, including the line loads that act everywhere
 /// [N/m].
-[[nodiscard]] Eigen::Vector3d weight_everywhere(const Problem& problem);
+[[nodiscard]] Eigen::Vector3d total_uniform_weight(const Problem& problem);
 
 /// Returns two orthogonal unit directions of the plane in which couples about this axis bend a rod.
 [[nodiscard]] inline std::array<Eigen::Vector3d, 2> plane_across(const Eigen::Vector3d& axis) {
@@ -86,7 +86,7 @@ struct OrderedGrip {
 /// Returns the index in Problem::grips of the clamp that alone carries a load, because they are
 /// within 1e-9 l of each other; std::nullopt if there is no such clamp. Every other load is carried
 /// by exactly one span, so that each counts once.
-[[nodiscard]] std::optional<std::size_t> clamp_under(const Problem& problem, const Load& load);
+[[nodiscard]] std::optional<std::size_t> clamp_at_load(const Problem& problem, const Load& load);
 
 /// Adds the loads on clamps to the clamps' reactions, and their potential relative to the first
 /// grip to the energy, because no span carries them.
@@ -94,11 +94,11 @@ void add_loads_on_clamps(const Problem& problem, Equilibrium& result);
 
 /// Returns the arc lengths at which a shape may have kinks: ends, grips, loads, ends of sections,
 /// line loads and contacts, growing [m].
-[[nodiscard]] std::vector<double> kinks_of(const Problem& problem,
-                                           const std::vector<ContactPart>& contacts);
+[[nodiscard]] std::vector<double> kink_positions(const Problem& problem,
+                                                 const std::vector<ContactPart>& contacts);
 
 /// Converts energies from EI/l to [J].
-[[nodiscard]] Energies restore(const Problem& problem, const Energies& own_units);
+[[nodiscard]] Energies to_joules(const Problem& problem, const Energies& own_units);
 
 /// Moves the energy of line loads from `gravity` to `load`, because solvers treat line loads as
 /// weight. It is integrated by Gauss's quadrature between the kinks of the shape. No effect on a

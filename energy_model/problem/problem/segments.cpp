@@ -13,22 +13,22 @@ constexpr double largest_slack = 0.05;
 /// length.
 constexpr double largest_tension = 1e9;
 
-double sine_of_half(const Eigen::Vector3d& a, const Eigen::Vector3d& b) {
+double sine_of_half_angle(const Eigen::Vector3d& a, const Eigen::Vector3d& b) {
   return (a - b).norm() / 2;
 }
 
 /// Returns 1 - cos(phi / 2) of the angle phi between two unit vectors.
-double turn_of(const Eigen::Vector3d& a, const Eigen::Vector3d& b) {
-  const double sine = sine_of_half(a, b);
+double one_minus_cosine_of_half(const Eigen::Vector3d& a, const Eigen::Vector3d& b) {
+  const double sine = sine_of_half_angle(a, b);
   return 1 - std::sqrt(std::max(0.0, 1 - sine * sine));
 }
 
 /// Returns the vector across the pull to the side of a tangent, of length sin(phi / 2).
-Eigen::Vector3d side_of(const Eigen::Vector3d& tangent, const Eigen::Vector3d& pull) {
+Eigen::Vector3d transverse_part(const Eigen::Vector3d& tangent, const Eigen::Vector3d& pull) {
   const Eigen::Vector3d side = tangent - tangent.dot(pull) * pull;
   const double size = side.norm();
   if (!(size > 1e-12)) return Eigen::Vector3d::Zero();
-  return sine_of_half(tangent, pull) / size * side;
+  return sine_of_half_angle(tangent, pull) / size * side;
 }
 
 /// Returns the tension with which a segment reaches this distance; 0 if it has enough slack.
@@ -39,8 +39,8 @@ double tension_for(const Span& span, const Segment& segment, double distance) {
   const auto across = [&](const Eigen::Vector3d& force) {
     return (force - force.dot(segment.pull) * segment.pull).squaredNorm();
   };
-  const double layers = 2 * (turn_of(segment.begin_tangent, segment.pull) +
-                             turn_of(segment.end_tangent, segment.pull));
+  const double layers = 2 * (one_minus_cosine_of_half(segment.begin_tangent, segment.pull) +
+                             one_minus_cosine_of_half(segment.end_tangent, segment.pull));
   double sag = across(span.mean_weight()) * std::pow(length, 3) / 24;
   for (const Span::Load& load : span.loads) {
     const double x = load.at - segment.begin;
@@ -59,11 +59,11 @@ double tension_for(const Span& span, const Segment& segment, double distance) {
 /// Updates direction of the pull and tension: the layers at the ends displace the rod sideways, and
 /// the part between them points along the rest of the chord.
 /// @return relative change of the tension
-double pull(const Span& span, Segment& segment) {
-  const Eigen::Vector3d aside =
-      2 / std::sqrt(segment.tension) *
-      (side_of(segment.begin_tangent, segment.pull) + side_of(segment.end_tangent, segment.pull));
-  const Eigen::Vector3d rest = segment.chord - aside;
+double update_pull_and_tension(const Span& span, Segment& segment) {
+  const Eigen::Vector3d end_displacement = 2 / std::sqrt(segment.tension) *
+                                           (transverse_part(segment.begin_tangent, segment.pull) +
+                                            transverse_part(segment.end_tangent, segment.pull));
+  const Eigen::Vector3d rest = segment.chord - end_displacement;
   segment.pull = rest.normalized();
   // The geometric mean damps the alternation between displacement and tension.
   const double before = segment.tension;
@@ -125,7 +125,7 @@ std::vector<Segment> segments_of(const Span& span) {
     change = 0;
     set_tangents(span, segments);
     for (Segment& segment : segments) {
-      if (segment.taut()) change = std::max(change, pull(span, segment));
+      if (segment.taut()) change = std::max(change, update_pull_and_tension(span, segment));
     }
   }
   return change < settled ? segments : along_chords;

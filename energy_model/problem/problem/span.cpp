@@ -60,14 +60,14 @@ bool Span::has_unidirectional_load() const {
 
 HeldBy Span::held_within(double begin, double end, double margin) const {
   const auto within = [&](double at) { return at > begin - margin && at < end + margin; };
-  HeldBy held = HeldBy::nothing;
-  if (within(anchor)) held = start_direction ? HeldBy::clamp : HeldBy::pin;
+  HeldBy support = HeldBy::nothing;
+  if (within(anchor)) support = start_direction ? HeldBy::clamp : HeldBy::pin;
   for (std::size_t i = 0; i < holds.size(); ++i) {
     if (!within(holds[i].at)) continue;
     const bool clamp = holds[i].direction || (end_direction && i + 1 == holds.size());
-    held = std::max(held, clamp ? HeldBy::clamp : HeldBy::pin);
+    support = std::max(support, clamp ? HeldBy::clamp : HeldBy::pin);
   }
-  return held;
+  return support;
 }
 
 }  // namespace dlo::energy_model

@@ -15,7 +15,7 @@ namespace dlo::energy_model {
 namespace {
 
 /// Interval of arc length of a span [m], and whether clamps hold its ends.
-struct Stretch {
+struct SpanInterval {
   double begin = 0, end = 0;
   bool clamped_begin = false, clamped_end = false;
 
@@ -92,7 +92,7 @@ bool are_symmetric(const Span& span) {
 }
 
 /// Adds the sections of the rod between two arc lengths to a span that runs from placed.start on.
-void place_sections(const Problem& problem, const Stretch& stretch, PlacedSpan& placed) {
+void place_sections(const Problem& problem, const SpanInterval& stretch, PlacedSpan& placed) {
   const double l = problem.length;
   const double force_unit = bending_unit(problem) / (l * l);
   for (const Section& section : problem.sections) {
@@ -110,13 +110,13 @@ void place_sections(const Problem& problem, const Stretch& stretch, PlacedSpan& 
 }
 
 /// Adds the line loads between two arc lengths that are not contained in the span's weight.
-void place_line_loads(const Problem& problem, const Stretch& stretch, PlacedSpan& placed) {
+void place_line_loads(const Problem& problem, const SpanInterval& stretch, PlacedSpan& placed) {
   const double l = problem.length;
   const double unit = bending_unit(problem) / (l * l * l);
   for (const LineLoad& load : problem.line_loads) {
     const double from = std::max(stretch.begin, load.begin);
     const double to = std::min(stretch.end, load.end);
-    if (acts_everywhere(load, problem) || !(to > from)) continue;
+    if (is_uniform_over_rod(load, problem) || !(to > from)) continue;
     LineLoad own{placed.s_of(from, l), placed.s_of(to, l),
                  (load.at_begin + (from - load.begin) * load.slope()) / unit,
                  (load.at_begin + (to - load.begin) * load.slope()) / unit};
@@ -142,27 +142,28 @@ std::optional<HeldFrames> frames_of(const Problem& problem, const OrderedGrip& s
   return HeldFrames{.stiffness = mean / bending_unit(problem),
                     .start_d1 = axes * held_d1(problem, first),
                     .end_d1 = axes * held_d1(problem, end),
-                    .turns = turns_between(problem, first, end)};
+                    .turns = prescribed_turns(problem, first, end)};
 }
 
-constexpr const char* confined_need =
+constexpr const char* confined_requirement =
     "false unless grips, forces and natural curvature lie in one plane, at most one clamp has a "
     "frame, and there are no obstacles";
 
-constexpr const char* couples_need =
+constexpr const char* couple_requirement =
     "0, or normal to the plane of grips and forces if the rod stays in it, at most one clamp has a "
     "frame, and there are no obstacles: any other couple has no potential";
 
 /// Adds couples about the normal of the span's plane to the loads of the span.
-void place_couples(const Problem& problem, const Stretch& stretch, PlacedSpan& placed) {
+void place_couples(const Problem& problem, const SpanInterval& stretch, PlacedSpan& placed) {
   constexpr double rounding = 1e-9;
   const double unit = bending_unit(problem) / problem.length;
   for (const Load& load : problem.loads) {
-    if (!stretch.contains(load.at) || load.torque.isZero(0) || clamp_under(problem, load)) continue;
+    if (!stretch.contains(load.at) || load.torque.isZero(0) || clamp_at_load(problem, load))
+      continue;
     const Eigen::Vector3d own = placed.frame * load.torque;
     require(placed.span.planar && own.head<2>().norm() <= rounding * own.norm() &&
                 clamps_with_frames(problem) < 2 && problem.obstacles.empty(),
-            "Problem", "torque of a load", load.torque.norm(), couples_need);
+            "Problem", "torque of a load", load.torque.norm(), couple_requirement);
     // The couple is added to the load without a couple that place_loads() has placed at s; couples
     // at one position add up.
     const double s = placed.s_of(load.at, problem.length);
@@ -178,7 +179,7 @@ void place_couples(const Problem& problem, const Stretch& stretch, PlacedSpan& p
 
 /// Places the grips of the span by growing s; the first of them is its anchor.
 void place_grips(const Problem& problem, const std::vector<OrderedGrip>& held,
-                 const Stretch& stretch, PlacedSpan& placed, Directions& directions) {
+                 const SpanInterval& stretch, PlacedSpan& placed, Directions& directions) {
   const double l = problem.length;
   const double sense = placed.reversed ? -1 : 1;
   Span& span = placed.span;
@@ -209,7 +210,7 @@ void place_grips(const Problem& problem, const std::vector<OrderedGrip>& held,
 }
 
 /// Places the loads that are not on clamps, and collects the directions of all forces.
-void place_loads(const Problem& problem, const Stretch& stretch, PlacedSpan& placed,
+void place_loads(const Problem& problem, const SpanInterval& stretch, PlacedSpan& placed,
                  Directions& directions) {
   const double l = problem.length;
   const double force_unit = bending_unit(problem) / (l * l);
@@ -221,7 +222,7 @@ void place_loads(const Problem& problem, const Stretch& stretch, PlacedSpan& pla
   }
   for (const Load& load : problem.loads) {
     // A load on a clamp is carried by the gripper alone.
-    if (!stretch.contains(load.at) || clamp_under(problem, load)) continue;
+    if (!stretch.contains(load.at) || clamp_at_load(problem, load)) continue;
     span.loads.push_back({placed.s_of(load.at, l), load.force / force_unit});
     directions.forces.push_back(span.loads.back().force);
     if (load.torque.isZero(0)) continue;
@@ -252,7 +253,7 @@ void place_obstacles(const Problem& problem, PlacedSpan& placed, Directions& dir
 
 /// Creates the span of an interval. It runs backwards if only its end is clamped.
 PlacedSpan place(const Problem& problem, const std::vector<OrderedGrip>& grips,
-                 const Stretch& stretch) {
+                 const SpanInterval& stretch) {
   const double l = problem.length;
   const double force_unit = bending_unit(problem) / (l * l);
   PlacedSpan placed;
@@ -260,7 +261,7 @@ PlacedSpan place(const Problem& problem, const std::vector<OrderedGrip>& grips,
   placed.start = placed.reversed ? stretch.end : stretch.begin;
   Span& span = placed.span;
   span.length = (stretch.end - stretch.begin) / l;
-  span.weight = weight_everywhere(problem) * l / force_unit;
+  span.weight = total_uniform_weight(problem) * l / force_unit;
   span.stiffness = principal_stiffness({.bending_stiffness = problem.bending_stiffness,
                                         .torsional_stiffness = problem.torsional_stiffness,
                                         .bending_stiffness_2 = problem.bending_stiffness_2},
@@ -282,11 +283,11 @@ PlacedSpan place(const Problem& problem, const std::vector<OrderedGrip>& grips,
   if (!are_symmetric(span)) span.planar = false;
   if (has_material_directors(problem)) place_material_directors(problem, held.front(), placed);
   require(!span.has_couples() || span.planar, "Problem", "torque of a load", span.total_load(),
-          couples_need);
+          couple_requirement);
   span.confined = problem.confined_to_plane;
   require(!span.confined ||
               (span.planar && clamps_with_frames(problem) < 2 && problem.obstacles.empty()),
-          "Problem", "confined_to_plane", 1, confined_need);
+          "Problem", "confined_to_plane", 1, confined_requirement);
   if (stretch.is_between_clamps()) {
     placed.frames = frames_of(problem, held.front(), *held.back().grip, placed.frame);
   }

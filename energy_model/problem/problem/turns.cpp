@@ -17,13 +17,13 @@ namespace {
 using std::numbers::pi;
 
 /// Returns the equivalent angle in (-pi, pi]. An angle of -pi up to rounding becomes pi.
-double within_half_turn(double angle) {
+double wrap_to_pi(double angle) {
   constexpr double rounding = 1e-9;
   const double least = std::remainder(angle, 2 * pi);
   return least < rounding - pi ? pi : least;
 }
 
-Eigen::Vector3d part_across(const Eigen::Vector3d& v, const Eigen::Vector3d& direction) {
+Eigen::Vector3d normal_direction(const Eigen::Vector3d& v, const Eigen::Vector3d& direction) {
   return (v - v.dot(direction) * direction).normalized();
 }
 
@@ -41,7 +41,7 @@ std::pair<double, double> writhes_of_class(double modulo_two) {
 }
 
 /// Returns the one of two numbers that is nearer to a third.
-double nearer_to(double wanted, double one, double other) {
+double nearer_of(double wanted, double one, double other) {
   return std::abs(one - wanted) <= std::abs(other - wanted) ? one : other;
 }
 
@@ -58,7 +58,7 @@ const Grip& reference_clamp(const Problem& problem) {
 /// Returns the d1 of reference_clamp() before its roll.
 Eigen::Vector3d reference_d1(const Problem& problem, const Grip& clamp) {
   const Eigen::Vector3d direction = clamp.direction->normalized();
-  if (clamp.frame && clamp.frame->d1) return part_across(*clamp.frame->d1, direction);
+  if (clamp.frame && clamp.frame->d1) return normal_direction(*clamp.frame->d1, direction);
   if (!has_material_directors(problem)) return direction.unitOrthogonal();
   const double roll = clamp.frame ? clamp.frame->roll : 0;
   return Eigen::AngleAxisd(-roll, direction) * first_frame(problem).col(0);
@@ -69,7 +69,7 @@ Eigen::Vector3d reference_d1(const Problem& problem, const Grip& clamp) {
 Eigen::Vector3d held_d1(const Problem& problem, const Grip& grip) {
   require(grip.direction && grip.frame, "held_d1", "arc length of a grip without a frame", grip.at,
           "the arc length of a clamp with a frame");
-  if (grip.frame->d1) return part_across(*grip.frame->d1, grip.direction->normalized());
+  if (grip.frame->d1) return normal_direction(*grip.frame->d1, grip.direction->normalized());
   const Grip& first = reference_clamp(problem);
   Eigen::Vector3d d1 = reference_d1(problem, first);
   if (first.at == grip.at) return d1;
@@ -88,35 +88,35 @@ std::optional<double> held_turns(const Problem& problem, const Grip& first, cons
   const Eigen::Vector3d d1 = held_d1(problem, last);
   const double angle =
       std::atan2(carried.cross(d1).dot(last.direction->normalized()), carried.dot(d1));
-  return (within_half_turn(angle) + last.frame->roll - first.frame->roll) / (2 * pi);
+  return (wrap_to_pi(angle) + last.frame->roll - first.frame->roll) / (2 * pi);
 }
 
-HeldTurns turns_between(const Problem& problem, const Grip& first, const Grip& last) {
+HeldTurns prescribed_turns(const Problem& problem, const Grip& first, const Grip& last) {
   HeldTurns held{.roll = last.frame->roll - first.frame->roll, .turns = std::nullopt};
   if (problem.natural_strains.empty() || last.frame->d1)
     held.turns = held_turns(problem, first, last);
   return held;
 }
 
-double turned_angle(const HeldTurns& held, double ahead, double twist,
+double end_rotation(const HeldTurns& held, double frame_angle, double twist,
                     const std::optional<Writhe>& writhe) {
-  const double angle = within_half_turn(ahead) + held.roll;
+  const double angle = wrap_to_pi(frame_angle) + held.roll;
   if (!held.turns || !writhe) return angle;
   const auto to_turns_with = [&](double w) {
     return angle + 2 * pi * std::round(*held.turns - (twist + angle) / (2 * pi) - w);
   };
   if (writhe->value) return to_turns_with(*writhe->value);
   const auto [one, other] = writhes_of_class(writhe->modulo_two);
-  return nearer_to(0, to_turns_with(one), to_turns_with(other));
+  return nearer_of(0, to_turns_with(one), to_turns_with(other));
 }
 
 double nearest_writhe(const Writhe& writhe, double wanted) {
   const auto [one, other] = writhes_of_class(writhe.modulo_two);
-  return writhe.value.value_or(nearer_to(wanted, one, other));
+  return writhe.value.value_or(nearer_of(wanted, one, other));
 }
 
-std::optional<int> turns_lost(const HeldTurns& held, double twist,
-                              const std::optional<Writhe>& writhe) {
+std::optional<int> missing_turns(const HeldTurns& held, double twist,
+                                 const std::optional<Writhe>& writhe) {
   if (!held.turns || !writhe) return 0;
   const double missing = *held.turns - twist / (2 * pi);
   const double in_class = std::remainder(missing - writhe->modulo_two, 2);

@@ -101,11 +101,11 @@ std::optional<double> gauss_integral(const Eigen::Matrix3Xd& points, const Eigen
 /// Returns the number of a class modulo two that is nearest to Gauss's integral; empty if the two
 /// nearest are about equally near, as for a curve that intersects itself.
 std::optional<double> nearest_of_class(double modulo_two, std::optional<double> integral) {
-  constexpr double farthest = 0.6;
+  constexpr double largest_remainder = 0.6;
   if (!integral) return std::nullopt;
-  const double off = std::remainder(*integral - modulo_two, 2);
-  if (std::abs(off) > farthest) return std::nullopt;
-  return *integral - off;
+  const double remainder = std::remainder(*integral - modulo_two, 2);
+  if (std::abs(remainder) > largest_remainder) return std::nullopt;
+  return *integral - remainder;
 }
 
 /// Returns the tangents of the segments of a polygon and of its ends.
@@ -129,8 +129,8 @@ std::optional<double> writhe_modulo_two(const Eigen::Matrix3Xd& tangents,
   for (Eigen::Index i = 0; i + 1 < tangents.cols(); ++i) {
     carried = Eigen::Quaterniond::FromTwoVectors(tangents.col(i), tangents.col(i + 1)) * carried;
   }
-  const Eigen::Quaterniond ahead = carried * closing->conjugate();
-  return std::atan2(ahead.vec().dot(last), ahead.w()) / pi;
+  const Eigen::Quaterniond relative = carried * closing->conjugate();
+  return std::atan2(relative.vec().dot(last), relative.w()) / pi;
 }
 
 std::optional<Writhe> writhe(const Eigen::Matrix3Xd& points, const Eigen::Vector3d& first,

@@ -30,7 +30,7 @@ constexpr double largest_error = 2;
 /// and second derivatives below kappa has a solution if h = eta kappa / lambda <= 1/2, at a
 /// distance of at most 2 / (1 + (1 - 2h)^(1/2)) eta. Half of the limit is a margin, as h is
 /// estimated.
-constexpr double largest_h = 0.25;
+constexpr double kantorovich_limit = 0.25;
 
 /// Bound of the third derivatives of E - mu . c along a unit direction of strains, divided by the
 /// scale of forces: forces times angles of at most 1, those of positions counted three times.
@@ -45,7 +45,7 @@ Eigen::VectorXd newton_step(NewtonSystem& system, const SpanPoint& point,
   right << -gradient, -point.residual;
   Eigen::VectorXd step;
   system.solve(right, step);
-  if (!system.is_met(right, step, largest_next_step)) step = system.minimum_norm_step(right);
+  if (!system.is_solved_by(right, step, largest_next_step)) step = system.minimum_norm_step(right);
   return step.head(gradient.size());
 }
 
@@ -62,7 +62,7 @@ double linear_error(const SpanSolution& solution, double load) {
   const double K = solution.terms;
   const double angle = solution.model->truncation(solution.x) / (2 * K);
   const double smallest = std::min(solution.eigenvalue_nearest_zero, 1.0);
-  const double truncated = scale * angle / (2 * K) + misplaced_contact(solution);
+  const double truncated = scale * angle / (2 * K) + misplaced_contact_error(solution);
   return solution.next_step + (rounding_of(scale) + truncated) / smallest;
 }
 
@@ -97,7 +97,7 @@ Eigen::VectorXd change_with_fewer_terms(const SpanSolution& solution, const Span
   Eigen::VectorXd last = Eigen::VectorXd::Zero(solution.x.size());
   const auto for_each = [&](const auto& visit) {
     for (Eigen::Index field = 0; field < unknowns.fields; ++field) {
-      for (Eigen::Index e = 0; e < unknowns.pieces; ++e) {
+      for (Eigen::Index e = 0; e < unknowns.elements; ++e) {
         visit(unknowns.first(field, e) + unknowns.terms - dropped);
       }
     }
@@ -123,11 +123,11 @@ double measured_error(const SpanSolution& solution, const SpanPoint& point,
   const double scale = scale_of_forces(solution, load);
   const double smallest = std::min(solution.eigenvalue_nearest_zero, 1.0);
   const double soft =
-      (rounding_of(scale) * (1 - smallest) + misplaced_contact(solution)) / smallest;
+      (rounding_of(scale) * (1 - smallest) + misplaced_contact_error(solution)) / smallest;
   const Eigen::Matrix3Xd here = points_at(*solution.model, solution.x);
   const auto points_moved = [&](const Eigen::VectorXd& change) {
-    const Eigen::Matrix3Xd there = points_at(*solution.model, solution.x + change);
-    return (there - here).colwise().norm().maxCoeff();
+    const Eigen::Matrix3Xd moved_points = points_at(*solution.model, solution.x + change);
+    return (moved_points - here).colwise().norm().maxCoeff();
   };
   return safety *
              (points_moved(next_step) + points_moved(change_with_fewer_terms(solution, point))) +
@@ -169,7 +169,7 @@ struct SoftMode {
 
 SoftMode soft_mode(NewtonSystem& system, const Eigen::MatrixXd& jacobian, Eigen::Index free) {
   SoftMode mode;
-  mode.direction = direction_by_size(system.reduced_hessian(), free);
+  mode.direction = eigenvector_by_magnitude(system.reduced_hessian(), free);
   mode.multipliers = Eigen::VectorXd::Zero(jacobian.rows());
   if (jacobian.rows() > 0) {
     mode.multipliers =
@@ -206,9 +206,9 @@ EigenvalueDerivatives eigenvalue_derivatives(SpanSolution& solution, const SoftM
   };
   Eigen::VectorXd along(v.size() + m);
   along << v, mode.multipliers;
-  const Eigen::VectorXd ahead = image(step);
+  const Eigen::VectorXd forward = image(step);
   const Eigen::VectorXd behind = image(-step);
-  const Eigen::VectorXd change = (ahead - behind) / (2 * step);
+  const Eigen::VectorXd change = (forward - behind) / (2 * step);
   const double first = product(change, along);
   Eigen::VectorXd right = -change;
   right.head(v.size()) += first * v;
@@ -216,17 +216,17 @@ EigenvalueDerivatives eigenvalue_derivatives(SpanSolution& solution, const SoftM
   Eigen::VectorXd w;
   system.solve(right, w);
   constexpr double longest = 1e3;
-  if (!system.is_met(right, w, longest)) w = system.minimum_norm_step(right);
+  if (!system.is_solved_by(right, w, longest)) w = system.minimum_norm_step(right);
   w -= w.head(v.size()).dot(v) * along;
   return {first,
-          product(ahead - 2 * image(0) + behind, along) / (step * step) + 3 * product(change, w)};
+          product(forward - 2 * image(0) + behind, along) / (step * step) + 3 * product(change, w)};
 }
 
 /// Whether the second variation might change within `eta` so much that h exceeds its limit. False
 /// if a bound by the largest forces excludes it; true if the eigenvalue is unknown.
 bool may_be_at_fold(const SpanSolution& solution, double load, double eta) {
   return !(eta * largest_third_derivative * scale_of_forces(solution, load) <=
-           largest_h * solution.eigenvalue_nearest_zero);
+           kantorovich_limit * solution.eigenvalue_nearest_zero);
 }
 
 class Certification {
@@ -247,14 +247,14 @@ class Certification {
     factorise();
     solution_.rigid_body_modes = static_cast<int>(rigid_.all());
     estimate_error();
-    if (model_.span().planar && !model_.span().stays_in_plane()) look_out_of_plane();
+    if (model_.span().planar && !model_.span().stays_in_plane()) check_out_of_plane();
     if (undetermined || !small_step_) return solution_.finish(SolveStatus::near_singular);
-    const MiddlePassed middle = middle_passed(solution_);
-    if (middle == MiddlePassed::near) {
+    const MiddlePassage middle = classify_middle_passage(solution_);
+    if (middle == MiddlePassage::near) {
       solution_.neutral_directions = std::max(1, solution_.neutral_directions);
       return solution_.finish(SolveStatus::near_singular);
     }
-    if (solution_.smallest_eigenvalue < -neutral || middle != MiddlePassed::none) {
+    if (solution_.smallest_eigenvalue < -zero_eigenvalue_limit || middle != MiddlePassage::none) {
       return solution_.finish(SolveStatus::saddle);
     }
     solution_.finish(solution_.neutral_directions > 0 ? SolveStatus::near_singular
@@ -269,7 +269,7 @@ class Certification {
     ++solution_.evaluations;
     solution_.energy = point_->energy;
     gradient_ = point_->gradient - point_->jacobian.transpose() * solution_.multipliers;
-    if (!(solution_.multipliers.norm() <= largest_pull * (1 + load_))) {
+    if (!(solution_.multipliers.norm() <= largest_grip_force * (1 + load_))) {
       solution_.fail("the reactions of the grips are unbounded");
       return false;
     }
@@ -290,9 +290,9 @@ class Certification {
     factors_.factor_at(solution_, *point_, load_);
     NewtonSystem& system = solution_.factor->system;
     next_step_ = newton_step(system, *point_, gradient_);
-    judge_step();
+    check_newton_step();
     found_ = eigenvalues_of(system.reduced_hessian(), rigid_.in_plane);
-    subtract_ridges();
+    include_ridge_terms();
     if (!small_step_ || found_.neutral_directions > 0) count_sliding_mode(system);
     solution_.smallest_eigenvalue = found_.smallest;
     solution_.eigenvalue_nearest_zero = found_.nearest_zero;
@@ -300,11 +300,12 @@ class Certification {
     eta_ = linear_error(solution_, load_);
   }
 
-  void judge_step() {
+  void check_newton_step() {
     solution_.next_step = next_step_.norm();
     small_step_ = solution_.next_step <= largest_next_step;
     // With a smaller eigenvalue the remaining residual causes a step that is not small.
-    bound_ = std::max(neutral, small_step_ ? 0 : solution_.residual / largest_next_step);
+    bound_ =
+        std::max(zero_eigenvalue_limit, small_step_ ? 0 : solution_.residual / largest_next_step);
   }
 
   /// Counts a mode that shifts the shape along the rod as a rigid-body mode. The component of
@@ -315,7 +316,7 @@ class Certification {
         sliding_modes(model_, solution_.x, system.reduced_hessian(), rigid_.in_plane);
     if (!modes) return;
     next_step_ -= *modes * (modes->transpose() * next_step_);
-    judge_step();
+    check_newton_step();
     const Eigen::VectorXd last = modes->rightCols<1>();
     constexpr double rounding = 1.01;
     bound_ = std::max(bound_, rounding * std::abs(last.dot(system.hessian() * last)));
@@ -324,11 +325,11 @@ class Certification {
 
   /// Includes the second variation at the ridges of soft boxes. Newton's method does not need it,
   /// as an element ends there.
-  void subtract_ridges() {
+  void include_ridge_terms() {
     const std::vector<RidgeCrossing> ridges = ridge_crossings(solution_);
     if (ridges.empty()) return;
     const Span& span = model_.span();
-    const PositionOperator position(span, pieces_of(span), model_.table());
+    const PositionOperator position(span, elements_of(span), model_.table());
     const std::array<Eigen::MatrixXd, 3> tangents = model_.tangent_jacobian(*point_);
     Eigen::MatrixXd hessian = solution_.factor->system.hessian();
     for (const RidgeCrossing& ridge : ridges) {
@@ -358,7 +359,7 @@ class Certification {
       const double kappa = std::abs(change.first) + std::abs(change.second) * eta_;
       const double h = eta_ * kappa / solution_.eigenvalue_nearest_zero;
       moved = h <= 0.5 ? 2 * eta_ / (1 + std::sqrt(1 - 2 * h)) : largest_error;
-      at_fold = h > largest_h;
+      at_fold = h > kantorovich_limit;
       if (at_fold) solution_.neutral_directions = std::max(1, solution_.neutral_directions);
     }
     solution_.error = error_estimate(solution_, moved);
@@ -368,12 +369,12 @@ class Certification {
     }
   }
 
-  void look_out_of_plane() {
+  void check_out_of_plane() {
     const SecondDerivatives across =
         second_derivatives_out_of_plane(model_, *point_, solution_.multipliers);
-    ReducedHessian beside;
-    beside.compute(across.hessian, across.jacobian);
-    const SmallEigenvalues found = eigenvalues_of(beside, rigid_.out_of_plane);
+    ReducedHessian reduced;
+    reduced.compute(across.hessian, across.jacobian);
+    const SmallEigenvalues found = eigenvalues_of(reduced, rigid_.out_of_plane);
     solution_.smallest_eigenvalue = std::min(solution_.smallest_eigenvalue, found.smallest);
     solution_.neutral_directions += found.neutral_directions;
   }
@@ -388,8 +389,8 @@ class Certification {
   Eigen::VectorXd gradient_;  // gradient of E - mu . c
   Eigen::VectorXd next_step_;
   RigidBodyModes rigid_;
-  double bound_ = neutral;  // magnitude up to which an eigenvalue counts as neutral
-  double eta_ = 0;          // error of the coefficients without a fold
+  double bound_ = zero_eigenvalue_limit;  // magnitude up to which an eigenvalue counts as neutral
+  double eta_ = 0;                        // error of the coefficients without a fold
   bool small_step_ = false;
   SmallEigenvalues found_;
 };
@@ -415,7 +416,7 @@ void certify_out_of_plane(SpanSolution& solution, double load, NewtonFactors& fa
   }
   const double eta = linear_error(solution, load);
   // Newton's method determines no eigenvalue of a saddle in the plane. An eigenvalue up to
-  // `neutral` may belong to a fold by rounding alone.
+  // `zero_eigenvalue_limit` may belong to a fold by rounding alone.
   if (solution.status == SolveStatus::near_singular || may_be_at_fold(solution, load, eta)) {
     return certify(solution, load, factors);
   }

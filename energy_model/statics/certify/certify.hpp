@@ -11,11 +11,11 @@ class NewtonFactors;
 /// the second variation in all directions that the constraints leave free, including those out of a
 /// span's plane. A negative eigenvalue makes the result a `saddle`. It becomes `near_singular`,
 /// with the number of such directions, if the step is not small, or an eigenvalue is zero to
-/// `neutral` in a direction that is no rigid-body mode (rigid_body_modes.hpp). It also becomes
-/// `near_singular` if a positive eigenvalue might double or vanish within the error of the shape,
-/// as at a fold (Kantorovich's condition). The error is estimated in each case. If the residual is
-/// not small, or the grips' forces are too large, the result becomes `failed`. A failed solution
-/// stays unchanged. On return the solution's factor is that at solution.x.
+/// `zero_eigenvalue_limit` in a direction that is no rigid-body mode (rigid_body_modes.hpp). It
+/// also becomes `near_singular` if a positive eigenvalue might double or vanish within the error of
+/// the shape, as at a fold (Kantorovich's condition). The error is estimated in each case. If the
+/// residual is not small, or the grips' forces are too large, the result becomes `failed`. A failed
+/// solution stays unchanged. On return the solution's factor is that at solution.x.
 /// @param load  weight plus loads, the scale of the residuals
 void certify(SpanSolution& solution, double load, NewtonFactors& factors);
 

@@ -9,16 +9,16 @@ namespace dlo::energy_model {
 namespace {
 
 /// Number of points at which a shape is sampled.
-constexpr Eigen::Index probes = 4096;
+constexpr Eigen::Index shape_samples = 4096;
 
 /// A cause of bending that is confined to a length of its own.
-struct Feature {
+struct BendingFeature {
   double at = 0;
   double length = 0;  // 0: a free end, where the rod is not bent
 };
 
 /// Returns the force that the rod carries at s, up to its sign.
-Eigen::Vector3d carried_at(const SpanSolution& solution, double s) {
+Eigen::Vector3d internal_force_at(const SpanSolution& solution, double s) {
   const Span& span = solution.model->span();
   const Eigen::Index axes = span.planar ? 2 : 3;
   const bool after = s > span.anchor;
@@ -41,39 +41,44 @@ double stiffness_at(const Span& span, double s) {
 }
 
 /// Returns the boundary layer at a kink, on one side of it, with the length (EI / force)^(1/2).
-Feature kink_at(const SpanSolution& solution, double at, double sense) {
+BendingFeature boundary_layer_at(const SpanSolution& solution, double at, double sense) {
   const Span& span = solution.model->span();
   const bool free_begin = at < closest_cuts && !span.start_direction && span.anchor > 0;
-  const bool held_end = !span.holds.empty() && span.holds.back().at > span.length - closest_cuts;
-  const bool free_end = at > span.length - closest_cuts && !held_end && span.anchor < span.length;
+  const bool gripped_end = !span.holds.empty() && span.holds.back().at > span.length - closest_cuts;
+  const bool free_end =
+      at > span.length - closest_cuts && !gripped_end && span.anchor < span.length;
   if (free_begin || free_end) return {at, 0};
   const double s = at + sense * 1e-6 * span.length;
-  const double force = std::max(1.0, carried_at(solution, s).norm());
+  const double force = std::max(1.0, internal_force_at(solution, s).norm());
   return {at, std::sqrt(stiffness_at(span, s) / force)};
 }
 
 /// Returns the maxima of the curvature among the points up to twice 2 / curvature away, the length
 /// of an elastica that turns back there, if the curvature at that distance has decreased on both
-/// sides to at most `fallen` of the maximum.
-std::vector<Feature> peaks_of(const SpanSolution& solution, double begin, double end) {
-  constexpr double fallen = 0.6;
+/// sides to at most `peak_share` of the maximum.
+std::vector<BendingFeature> curvature_peaks(const SpanSolution& solution, double begin,
+                                            double end) {
+  constexpr double peak_share = 0.6;
   constexpr double widths = 2;
-  const Eigen::VectorXd at = Eigen::VectorXd::LinSpaced(probes, begin, end);
-  const Eigen::VectorXd curvature = solution.model->shape(solution.x)
-                                        .sample({at.data(), static_cast<std::size_t>(probes)})
-                                        .curvature.colwise()
-                                        .norm();
-  const double h = (end - begin) / static_cast<double>(probes - 1);
-  std::vector<Feature> peaks;
-  for (Eigen::Index i = 1; i + 1 < probes; ++i) {
+  const Eigen::VectorXd at = Eigen::VectorXd::LinSpaced(shape_samples, begin, end);
+  const Eigen::VectorXd curvature =
+      solution.model->shape(solution.x)
+          .sample({at.data(), static_cast<std::size_t>(shape_samples)})
+          .curvature.colwise()
+          .norm();
+  const double h = (end - begin) / static_cast<double>(shape_samples - 1);
+  std::vector<BendingFeature> peaks;
+  for (Eigen::Index i = 1; i + 1 < shape_samples; ++i) {
     const double length = 2 / curvature[i];
     if (!(widths * length < end - begin)) continue;
-    const auto aside = static_cast<Eigen::Index>(widths * length / h) + 1;
-    if (aside > i || i + aside >= probes) continue;
-    if (curvature.segment(i - aside, 2 * aside + 1).maxCoeff() > curvature[i]) continue;
-    if (std::max(curvature[i - aside], curvature[i + aside]) > fallen * curvature[i]) continue;
+    const auto half_window = static_cast<Eigen::Index>(widths * length / h) + 1;
+    if (half_window > i || i + half_window >= shape_samples) continue;
+    if (curvature.segment(i - half_window, 2 * half_window + 1).maxCoeff() > curvature[i]) continue;
+    if (std::max(curvature[i - half_window], curvature[i + half_window]) >
+        peak_share * curvature[i])
+      continue;
     peaks.push_back({at[i], length});
-    i += aside;
+    i += half_window;
   }
   return peaks;
 }
@@ -86,7 +91,7 @@ constexpr double closest_contact_ends = 1e-7;
 
 /// Number of parts into which a bracket is divided repeatedly, and its final width, divided by the
 /// rod length.
-constexpr int parts = 32;
+constexpr int bracket_parts = 32;
 constexpr double shortest_bracket = 1e-13;
 
 /// Smallest jump of the unit gradient of the depth that counts as a ridge; where a face meets a
@@ -95,7 +100,7 @@ constexpr double least_jump = 1e-3;
 
 /// Distance from the core of a cylinder, divided by the rod length, below which its force changes
 /// its direction too fast for the nodes of a whole element.
-constexpr double beside = 0.05;
+constexpr double near_core_distance = 0.05;
 
 /// An interval in which the contact state of the rod changes.
 struct Bracket {
@@ -104,11 +109,12 @@ struct Bracket {
   double end = 0;
 };
 
-constexpr int apart = -1;
+constexpr int outside_body = -1;
 
-/// Returns the face, edge or corner into which a point presses; `apart` if it is outside the body.
-int state(const obstacle::Body& body, const Eigen::Vector3d& point) {
-  return body.clearance(point) < 0 ? body.feature(point) : apart;
+/// Returns the face, edge or corner into which a point presses; `outside_body` if it is outside the
+/// body.
+int pressed_feature(const obstacle::Body& body, const Eigen::Vector3d& point) {
+  return body.clearance(point) < 0 ? body.feature(point) : outside_body;
 }
 
 Eigen::Matrix3Xd points_at(const SpanShape& shape, const std::vector<double>& s) {
@@ -125,7 +131,7 @@ std::vector<double> evenly_spaced(double length) {
 
 /// Appends equally spaced points from `begin` to `end`, both included.
 void append_divided(double begin, double end, std::vector<double>& s) {
-  for (int i = 0; i <= parts; ++i) s.push_back(begin + (end - begin) * i / parts);
+  for (int i = 0; i <= bracket_parts; ++i) s.push_back(begin + (end - begin) * i / bracket_parts);
 }
 
 /// Whether a body is a cylinder, a capsule or a ball, in which the force changes its direction at
@@ -148,19 +154,19 @@ std::vector<Bracket> brackets_of(const std::vector<Span::SoftObstacle>& obstacle
   for (std::size_t o = 0; o < obstacles.size(); ++o) {
     const obstacle::Body& body = obstacles[o].body;
     const Eigen::VectorXd clearance = body.clearances(points);
-    int before = state(body, points.col(0));
+    int before = pressed_feature(body, points.col(0));
     for (Eigen::Index i = 1; i < points.cols(); ++i) {
       const auto at = static_cast<std::size_t>(i);
-      const int here = state(body, points.col(i));
+      const int here = pressed_feature(body, points.col(i));
       if (here != before) brackets.push_back({o, s[at - 1], s[at]});
       before = here;
       const bool dip = i + 1 < points.cols() && clearance[i] >= 0 && clearance[i] < spacing &&
                        clearance[i] <= clearance[i - 1] && clearance[i] <= clearance[i + 1];
       if (dip) dips.push_back({o, s[at - 1], s[at + 1]});
-      const bool beside_core = i + 1 < points.cols() && clearance[i] < 0 && has_thin_core(body) &&
-                               clearance[i] + body.radius() < beside * length &&
+      const bool passes_core = i + 1 < points.cols() && clearance[i] < 0 && has_thin_core(body) &&
+                               clearance[i] + body.radius() < near_core_distance * length &&
                                clearance[i] < clearance[i - 1] && clearance[i] <= clearance[i + 1];
-      if (beside_core) brackets.push_back({o, s[at], s[at]});
+      if (passes_core) brackets.push_back({o, s[at], s[at]});
     }
   }
   for (const Bracket& dip : dips) {
@@ -180,8 +186,8 @@ std::vector<Bracket> brackets_of(const std::vector<Span::SoftObstacle>& obstacle
 
 /// Narrows each bracket to the changes within it; to the first one if the others would be closer
 /// than closest_contact_ends.
-std::vector<Bracket> narrowed(const std::vector<Span::SoftObstacle>& obstacles,
-                              const SpanShape& shape, const std::vector<Bracket>& brackets) {
+std::vector<Bracket> narrow_brackets(const std::vector<Span::SoftObstacle>& obstacles,
+                                     const SpanShape& shape, const std::vector<Bracket>& brackets) {
   std::vector<double> s;
   for (const Bracket& bracket : brackets) append_divided(bracket.begin, bracket.end, s);
   const Eigen::Matrix3Xd points = points_at(shape, s);
@@ -190,19 +196,19 @@ std::vector<Bracket> narrowed(const std::vector<Span::SoftObstacle>& obstacles,
   for (const Bracket& bracket : brackets) {
     const obstacle::Body& body = obstacles[bracket.obstacle].body;
     const bool all = bracket.end - bracket.begin > closest_contact_ends;
-    int before = state(body, points.col(static_cast<Eigen::Index>(first)));
+    int before = pressed_feature(body, points.col(static_cast<Eigen::Index>(first)));
     const std::size_t already = result.size();
-    for (std::size_t i = first + 1; i <= first + parts; ++i) {
-      const int here = state(body, points.col(static_cast<Eigen::Index>(i)));
+    for (std::size_t i = first + 1; i <= first + bracket_parts; ++i) {
+      const int here = pressed_feature(body, points.col(static_cast<Eigen::Index>(i)));
       if (here != before) result.push_back({bracket.obstacle, s[i - 1], s[i]});
       if (here != before && !all) break;
       before = here;
     }
     // A change that rounding has moved out of the bracket is taken to be at its end.
     if (result.size() == already) {
-      result.push_back({bracket.obstacle, s[first + parts - 1], s[first + parts]});
+      result.push_back({bracket.obstacle, s[first + bracket_parts - 1], s[first + bracket_parts]});
     }
-    first += parts + 1;
+    first += bracket_parts + 1;
   }
   return result;
 }
@@ -210,8 +216,8 @@ std::vector<Bracket> narrowed(const std::vector<Span::SoftObstacle>& obstacles,
 std::vector<Bracket> shortest_brackets(const Span& span, const SpanShape& shape) {
   std::vector<Bracket> brackets = brackets_of(span.soft_obstacles, shape, span.length);
   for (double width = span.length / first_intervals;
-       !brackets.empty() && width > shortest_bracket * span.length; width /= parts) {
-    brackets = narrowed(span.soft_obstacles, shape, brackets);
+       !brackets.empty() && width > shortest_bracket * span.length; width /= bracket_parts) {
+    brackets = narrow_brackets(span.soft_obstacles, shape, brackets);
   }
   return brackets;
 }
@@ -226,7 +232,8 @@ bool meets_core(const obstacle::Body& body, const SpanShape& shape, Bracket brac
     Eigen::Index nearest = 0;
     body.clearances(points_at(shape, s)).minCoeff(&nearest);
     const auto at = static_cast<std::size_t>(nearest);
-    bracket = {bracket.obstacle, s[at == 0 ? 0 : at - 1], s[std::min<std::size_t>(at + 1, parts)]};
+    bracket = {bracket.obstacle, s[at == 0 ? 0 : at - 1],
+               s[std::min<std::size_t>(at + 1, bracket_parts)]};
   }
   const std::vector<double> s = {(bracket.begin + bracket.end) / 2};
   return body.clearances(points_at(shape, s))[0] + body.radius() < 2 * rounding * length;
@@ -234,26 +241,26 @@ bool meets_core(const obstacle::Body& body, const SpanShape& shape, Bracket brac
 
 }  // namespace
 
-std::vector<double> piece_cuts(const SpanSolution& solution) {
+std::vector<double> element_cuts(const SpanSolution& solution) {
   std::vector<double> cuts;
-  const std::vector<double> kinks = kinks_of(solution.model->span());
+  const std::vector<double> kinks = kink_positions(solution.model->span());
   for (std::size_t k = 0; k + 1 < kinks.size(); ++k) {
-    std::vector<Feature> features = peaks_of(solution, kinks[k], kinks[k + 1]);
-    for (const Feature& peak : features) cuts.push_back(peak.at);
-    features.insert(features.begin(), kink_at(solution, kinks[k], 1));
-    features.push_back(kink_at(solution, kinks[k + 1], -1));
+    std::vector<BendingFeature> features = curvature_peaks(solution, kinks[k], kinks[k + 1]);
+    for (const BendingFeature& peak : features) cuts.push_back(peak.at);
+    features.insert(features.begin(), boundary_layer_at(solution, kinks[k], 1));
+    features.push_back(boundary_layer_at(solution, kinks[k + 1], -1));
     for (std::size_t i = 0; i + 1 < features.size(); ++i) {
-      const double room = features[i + 1].at - features[i].at;
-      cut_beside(features[i].at, 1, features[i].length, room, cuts);
-      cut_beside(features[i + 1].at, -1, features[i + 1].length, room, cuts);
+      const double spacing = features[i + 1].at - features[i].at;
+      add_cut_beside(features[i].at, 1, features[i].length, spacing, cuts);
+      add_cut_beside(features[i + 1].at, -1, features[i + 1].length, spacing, cuts);
     }
   }
   std::sort(cuts.begin(), cuts.end());
   return cuts;
 }
 
-int first_terms(double load, double longest_piece) {
-  const double own_load = load * longest_piece * longest_piece;
+int first_terms(double load, double longest_element) {
+  const double own_load = load * longest_element * longest_element;
   return static_cast<int>(std::ceil(9 * std::pow(std::clamp(own_load, 0.7, 1000.0), 0.24)));
 }
 
@@ -267,10 +274,10 @@ int terms_needed(const SpanEnergy& model, const Eigen::VectorXd& x, double toler
   return terms;
 }
 
-int terms_under_twist(const SpanSolution& solution) {
+int terms_for_buckling_modes(const SpanSolution& solution) {
   const SpanEnergy& model = *solution.model;
   const double torque = model.twisting_torque(solution.x, solution.multipliers);
-  return first_terms(torque * torque, model.longest_piece());
+  return first_terms(torque * torque, model.longest_element());
 }
 
 std::vector<double> contact_ends(const SpanSolution& solution) {
@@ -294,9 +301,9 @@ std::vector<RidgeCrossing> ridge_crossings(const SpanSolution& solution) {
   for (const Bracket& bracket : shortest_brackets(span, shape)) {
     const Span::SoftObstacle& obstacle = span.soft_obstacles[bracket.obstacle];
     const double s = (bracket.begin + bracket.end) / 2;
-    const double beside = closest_contact_ends * span.length;
-    if (!(s > beside && s < span.length - beside) || has_thin_core(obstacle.body)) continue;
-    const std::vector<double> at = {s - beside, s + beside};
+    const double offset = closest_contact_ends * span.length;
+    if (!(s > offset && s < span.length - offset) || has_thin_core(obstacle.body)) continue;
+    const std::vector<double> at = {s - offset, s + offset};
     const SpanSamples samples = shape.sample(at);
     const obstacle::Gap before = obstacle.body.gap(samples.points.col(0));
     const obstacle::Gap after = obstacle.body.gap(samples.points.col(1));
@@ -310,15 +317,15 @@ std::vector<RidgeCrossing> ridge_crossings(const SpanSolution& solution) {
   return crossings;
 }
 
-MiddlePassed middle_passed(const SpanSolution& solution) {
+MiddlePassage classify_middle_passage(const SpanSolution& solution) {
   const Span& span = solution.model->span();
-  if (span.soft_obstacles.empty()) return MiddlePassed::none;
+  if (span.soft_obstacles.empty()) return MiddlePassage::none;
   const SpanShape shape = solution.model->shape(solution.x);
   const std::vector<double> s = evenly_spaced(span.length);
   const Eigen::Matrix3Xd points = points_at(shape, s);
   constexpr double lengths_to_see = 4;
-  const double seen = lengths_to_see * span.length / first_intervals;
-  MiddlePassed passed = MiddlePassed::none;
+  const double visible_distance = lengths_to_see * span.length / first_intervals;
+  MiddlePassage passed = MiddlePassage::none;
   for (const Span::SoftObstacle& obstacle : span.soft_obstacles) {
     const obstacle::Body& body = obstacle.body;
     // Near a thin core the force changes its direction within the distance from the core, which
@@ -328,19 +335,20 @@ MiddlePassed middle_passed(const SpanSolution& solution) {
     for (Eigen::Index i = 1; i < points.cols(); ++i) {
       if (clearance[i - 1] >= 0 || clearance[i] >= 0) continue;
       const obstacle::Gap gap = body.gap(points.col(i));
-      if (span.planar && is_on_ridge(gap)) return MiddlePassed::on_ridge;
+      if (span.planar && is_on_ridge(gap)) return MiddlePassage::on_ridge;
       const bool turns = body.gap(points.col(i - 1)).gradient.dot(gap.gradient) < 0;
       const auto at = static_cast<std::size_t>(i);
       if (turns && thin && meets_core(body, shape, {0, s[at - 1], s[at]}, span.length)) {
-        return MiddlePassed::through_line;
+        return MiddlePassage::through_line;
       }
-      if (thin && (turns || clearance[i] + body.radius() < seen)) passed = MiddlePassed::near;
+      if (thin && (turns || clearance[i] + body.radius() < visible_distance))
+        passed = MiddlePassage::near;
     }
   }
   return passed;
 }
 
-double misplaced_contact(const SpanSolution& solution) {
+double misplaced_contact_error(const SpanSolution& solution) {
   const Span& span = solution.model->span();
   double stiffest = 0;
   for (const Span::SoftObstacle& obstacle : span.soft_obstacles) {
@@ -348,14 +356,14 @@ double misplaced_contact(const SpanSolution& solution) {
   }
   const std::vector<double> ends = contact_ends(solution);
   if (ends.empty()) return 0;
-  const std::vector<Piece> pieces = pieces_of(span);
+  const std::vector<Element> elements = elements_of(span);
   double force = 0;
   for (const double end : ends) {
-    double way = std::numeric_limits<double>::infinity();
-    for (const Piece& piece : pieces) {
-      way = std::min({way, std::abs(end - piece.begin), std::abs(end - piece.end())});
+    double distance = std::numeric_limits<double>::infinity();
+    for (const Element& element : elements) {
+      distance = std::min({distance, std::abs(end - element.begin), std::abs(end - element.end())});
     }
-    force += stiffest * way * way;
+    force += stiffest * distance * distance;
   }
   return force;
 }

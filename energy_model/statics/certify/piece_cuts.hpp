@@ -12,12 +12,12 @@ namespace dlo::energy_model {
 /// coefficients on an element decrease with the distance of the nearest complex singularity,
 /// measured in half lengths of the element, if it is next to the element's middle, but with the
 /// square root of that distance if it is at its end.
-[[nodiscard]] std::vector<double> piece_cuts(const SpanSolution& solution);
+[[nodiscard]] std::vector<double> element_cuts(const SpanSolution& solution);
 
 /// Returns the number of coefficients of each element that resolve a rod under this load to about
 /// 1e-10 of its length. The load acts on an element of length h as h^2 of it would act on a rod of
 /// length 1. A softer rod has elements of their own for the layers at its clamps.
-[[nodiscard]] int first_terms(double load, double longest_piece);
+[[nodiscard]] int first_terms(double load, double longest_element);
 
 /// Returns how many coefficients of a shape are needed so that the dropped ones contribute at most
 /// `tolerance`. The last of K coefficients contributes an angle of a_K / (2K), and its effect on
@@ -28,7 +28,7 @@ namespace dlo::energy_model {
 
 /// Returns the number of coefficients that resolve the buckling modes of a twisted span, helices
 /// with a rate of half its torque, even if its own shape is simple.
-[[nodiscard]] int terms_under_twist(const SpanSolution& solution);
+[[nodiscard]] int terms_for_buckling_modes(const SpanSolution& solution);
 
 /// Returns the arc lengths, ascending, at which a shape begins and ceases to press into a soft
 /// obstacle, and at which it passes within it from one face, edge or corner to the next. The force
@@ -38,10 +38,10 @@ namespace dlo::energy_model {
 /// Returns a bound of the force error [in the span's units] of a shape's series if a kink of the
 /// contact force lies within an element: near an end of contact the force per length is at most k
 /// times the distance from the end.
-[[nodiscard]] double misplaced_contact(const SpanSolution& solution);
+[[nodiscard]] double misplaced_contact_error(const SpanSolution& solution);
 
 /// Passage of a shape through the middle of a soft obstacle.
-enum class MiddlePassed {
+enum class MiddlePassage {
   none,
   through_line,  ///< through the axis of a cylinder or capsule, or a ball's centre
   on_ridge,      ///< in a plane of a box at equal distances from faces on both sides
@@ -66,6 +66,6 @@ struct RidgeCrossing {
 /// along a rod that crosses the axis has no lower bound, so that no such equilibrium is stable.
 /// Series resolve this only down to the distance of their nodes from the axis. On a ridge the force
 /// changes its direction with the side, so that no shape on it is an equilibrium.
-[[nodiscard]] MiddlePassed middle_passed(const SpanSolution& solution);
+[[nodiscard]] MiddlePassage classify_middle_passage(const SpanSolution& solution);
 
 }  // namespace dlo::energy_model

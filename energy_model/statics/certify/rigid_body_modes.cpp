@@ -14,36 +14,36 @@ namespace {
 
 /// Sine of the angle up to which a vector counts as parallel to an axis: the rounding of decimal
 /// input.
-constexpr double along = 1e-10;
+constexpr double parallel_tolerance = 1e-10;
 
 /// Returns the vectors, of length 1 or less, that a free rotation must not change.
-std::vector<Eigen::Vector3d> kept_vectors(const Span& span) {
-  std::vector<Eigen::Vector3d> kept;
+std::vector<Eigen::Vector3d> rotation_invariants(const Span& span) {
+  std::vector<Eigen::Vector3d> invariants;
   const double load = std::max(span.total_load(), 1e-300);
-  kept.emplace_back(span.weight * span.length / load);
+  invariants.emplace_back(span.weight * span.length / load);
   for (const Span::Part& part : span.parts) {
-    kept.emplace_back(part.weight * (part.end - part.begin) / load);
+    invariants.emplace_back(part.weight * (part.end - part.begin) / load);
   }
   for (const LineLoad& on : span.line_loads) {
-    kept.emplace_back(on.at_begin * (on.end - on.begin) / load);
-    kept.emplace_back(on.at_end * (on.end - on.begin) / load);
+    invariants.emplace_back(on.at_begin * (on.end - on.begin) / load);
+    invariants.emplace_back(on.at_end * (on.end - on.begin) / load);
   }
   for (const Span::Load& at : span.loads) {
-    kept.emplace_back(at.force / load);
-    if (at.couple != 0) kept.emplace_back(Eigen::Vector3d::UnitZ());
+    invariants.emplace_back(at.force / load);
+    if (at.couple != 0) invariants.emplace_back(Eigen::Vector3d::UnitZ());
   }
-  if (span.start_direction) kept.push_back(*span.start_direction);
-  if (span.end_direction) kept.push_back(*span.end_direction);
+  if (span.start_direction) invariants.push_back(*span.start_direction);
+  if (span.end_direction) invariants.push_back(*span.end_direction);
   for (const Span::Hold& hold : span.holds) {
-    kept.emplace_back(hold.offset / span.length);
-    if (hold.direction) kept.push_back(*hold.direction);
+    invariants.emplace_back(hold.offset / span.length);
+    if (hold.direction) invariants.push_back(*hold.direction);
   }
-  return kept;
+  return invariants;
 }
 
 /// Returns the axes, in the span of the given columns, about which a rotation moves none of the
 /// vectors.
-Eigen::MatrixXd axes_that_keep(const std::vector<Eigen::Vector3d>& vectors,
+Eigen::MatrixXd invariant_axes(const std::vector<Eigen::Vector3d>& vectors,
                                const Eigen::MatrixXd& axes) {
   if (axes.cols() == 0 || vectors.empty()) return axes;
   Eigen::MatrixXd moved(3 * static_cast<Eigen::Index>(vectors.size()), axes.cols());
@@ -54,13 +54,14 @@ Eigen::MatrixXd axes_that_keep(const std::vector<Eigen::Vector3d>& vectors,
     }
   }
   const Eigen::JacobiSVD<Eigen::MatrixXd> svd(moved, Eigen::ComputeFullV);
-  const Eigen::Index lost = (svd.singularValues().array() > along).count();
+  const Eigen::Index lost = (svd.singularValues().array() > parallel_tolerance).count();
   return axes * svd.matrixV().rightCols(axes.cols() - lost);
 }
 
 /// Returns the number of rotations about these axes that move the shape.
-Eigen::Index moving(const Eigen::MatrixXd& axes, const std::vector<Eigen::Vector3d>& shape) {
-  return axes.cols() - axes_that_keep(shape, axes).cols();
+Eigen::Index count_moving_rotations(const Eigen::MatrixXd& axes,
+                                    const std::vector<Eigen::Vector3d>& shape) {
+  return axes.cols() - invariant_axes(shape, axes).cols();
 }
 
 /// Whether a span is uniform and intrinsically straight, and only grips at its ends act on it.
@@ -98,9 +99,9 @@ Eigen::VectorXd derivative_along_rod(const SpanEnergy& model, const Eigen::Vecto
       table.values.leftCols(K).transpose() * table.weights.asDiagonal() * slopes.transpose();
   Eigen::VectorXd result = Eigen::VectorXd::Zero(x.size());
   for (Eigen::Index field = 0; field < unknowns.fields; ++field) {
-    for (Eigen::Index e = 0; e < unknowns.pieces; ++e) {
+    for (Eigen::Index e = 0; e < unknowns.elements; ++e) {
       const Eigen::Index first = unknowns.first(field, e);
-      result.segment(first, K) = derivative * x.segment(first, K) / model.piece(e).length;
+      result.segment(first, K) = derivative * x.segment(first, K) / model.element(e).length;
     }
   }
   return result;
@@ -125,7 +126,7 @@ std::optional<Eigen::MatrixXd> sliding_modes(const SpanEnergy& model, const Eige
   // zero.
   constexpr double least_share = 0.99;
   Eigen::MatrixXd modes(x.size(), rigid + 1);
-  for (Eigen::Index i = 0; i <= rigid; ++i) modes.col(i) = direction_by_size(hessian, i);
+  for (Eigen::Index i = 0; i <= rigid; ++i) modes.col(i) = eigenvector_by_magnitude(hessian, i);
   const double share = (modes.transpose() * shift).squaredNorm() / shift.squaredNorm();
   if (!(share > least_share)) return std::nullopt;
   return modes;
@@ -144,19 +145,21 @@ RigidBodyModes rigid_body_modes(const Span& span, const Eigen::Matrix3Xd& tangen
   } else {
     for (Eigen::Index q = 0; q < tangents.cols(); ++q) shape.emplace_back(tangents.col(q));
   }
-  const std::vector<Eigen::Vector3d> kept = kept_vectors(span);
-  if (!span.planar) return {.in_plane = moving(axes_that_keep(kept, axes), shape)};
-  return {.in_plane = moving(axes_that_keep(kept, axes.col(2)), shape),
-          .out_of_plane = moving(axes_that_keep(kept, axes.leftCols(2)), shape)};
+  const std::vector<Eigen::Vector3d> invariants = rotation_invariants(span);
+  if (!span.planar)
+    return {.in_plane = count_moving_rotations(invariant_axes(invariants, axes), shape)};
+  return {
+      .in_plane = count_moving_rotations(invariant_axes(invariants, axes.col(2)), shape),
+      .out_of_plane = count_moving_rotations(invariant_axes(invariants, axes.leftCols(2)), shape)};
 }
 
 bool is_rotated_copy(const Span& span, const Eigen::Matrix3Xd& a, const Eigen::Matrix3Xd& b) {
-  constexpr double same = 1e-6;
+  constexpr double tolerance = 1e-6;
   if (span.has_material_directors()) return false;
-  const std::vector<Eigen::Vector3d> kept = kept_vectors(span);
-  const auto count = static_cast<Eigen::Index>(kept.size());
+  const std::vector<Eigen::Vector3d> invariants = rotation_invariants(span);
+  const auto count = static_cast<Eigen::Index>(invariants.size());
   Eigen::Matrix3Xd from(3, count + a.cols());
-  for (Eigen::Index i = 0; i < count; ++i) from.col(i) = kept[static_cast<std::size_t>(i)];
+  for (Eigen::Index i = 0; i < count; ++i) from.col(i) = invariants[static_cast<std::size_t>(i)];
   from.rightCols(a.cols()) = a / span.length;
   Eigen::Matrix3Xd to = from;
   to.rightCols(b.cols()) = b / span.length;
@@ -166,7 +169,7 @@ bool is_rotated_copy(const Span& span, const Eigen::Matrix3Xd& a, const Eigen::M
   Eigen::Vector3d signs = Eigen::Vector3d::Ones();
   signs[2] = svd.matrixU().determinant() * svd.matrixV().determinant() < 0 ? -1 : 1;
   const Eigen::Matrix3d turn = svd.matrixU() * signs.asDiagonal() * svd.matrixV().transpose();
-  return (turn * from - to).norm() < same;
+  return (turn * from - to).norm() < tolerance;
 }
 
 }  // namespace dlo::energy_model

@@ -31,8 +31,8 @@ constexpr int halvings_beside_contact = 10;
 constexpr double not_evaluated = std::numeric_limits<double>::infinity();
 
 /// Finds the smallest clearance between `low` and `high` by Newton's method from `at`.
-GapMinimum lowest_between(const Span::Obstacle& obstacle, const SpanShape& shape, double low,
-                          double at, double high) {
+GapMinimum smallest_clearance(const Span::Obstacle& obstacle, const SpanShape& shape, double low,
+                              double at, double high) {
   GapMinimum lowest{obstacle, at, std::numeric_limits<double>::infinity()};
   for (int k = 0; k < refinements; ++k) {
     const Clearance here = clearance_at(obstacle.body, shape.sample(std::array{at}), 0);
@@ -46,9 +46,10 @@ GapMinimum lowest_between(const Span::Obstacle& obstacle, const SpanShape& shape
 
 /// Adds minima of the clearance below `below` on both sides of a contact's ends, closer than
 /// `reach`.
-void add_beside_contacts(const Span& span, const Span::Obstacle& obstacle, const SpanShape& shape,
-                         double below, double reach, std::vector<GapMinimum>& found) {
-  const auto look = [&](double end, double first_step) {
+void add_minima_beside_contacts(const Span& span, const Span::Obstacle& obstacle,
+                                const SpanShape& shape, double below, double reach,
+                                std::vector<GapMinimum>& found) {
+  const auto scan = [&](double end, double first_step) {
     std::vector<double> s;
     for (double step = first_step; std::ssize(s) < halvings_beside_contact; step /= 2) {
       s.push_back(std::clamp(end + step, 0.0, span.length));
@@ -61,7 +62,7 @@ void add_beside_contacts(const Span& span, const Span::Obstacle& obstacle, const
       const auto at = static_cast<std::size_t>(k);
       const double low = std::min(s[at - 1], s[at + 1]);
       const double high = std::max(s[at - 1], s[at + 1]);
-      const GapMinimum lowest = lowest_between(obstacle, shape, low, s[at], high);
+      const GapMinimum lowest = smallest_clearance(obstacle, shape, low, s[at], high);
       // The grid may already have found it.
       const bool known = std::any_of(found.begin(), found.end(), [&](const GapMinimum& other) {
         return other.obstacle.index == obstacle.index && other.s >= low && other.s <= high;
@@ -71,8 +72,8 @@ void add_beside_contacts(const Span& span, const Span::Obstacle& obstacle, const
   };
   for (const Span::Contact& contact : span.contacts) {
     if (contact.obstacle.index != obstacle.index) continue;
-    look(contact.begin, -reach);
-    look(contact.end, reach);
+    scan(contact.begin, -reach);
+    scan(contact.end, reach);
   }
 }
 
@@ -129,7 +130,7 @@ std::vector<double> near_obstacles(const Problem& problem, const Equilibrium& sh
     return least;
   };
   std::vector<double> near = {s.front()};
-  for (const std::size_t i : near_points(s, stride, most, clearances)) {
+  for (const std::size_t i : points_near_obstacle(s, stride, most, clearances)) {
     if (i > 0) near.push_back(s[i]);
   }
   if (near.back() < s.back()) near.push_back(s.back());
@@ -153,15 +154,15 @@ Penetration penetration(const Problem& problem, const Equilibrium& shape) {
 }
 
 /// Largest pull of an obstacle, divided by the scale of all forces, that counts as rounding.
-constexpr double strongest_pull = 1e-7;
+constexpr double tensile_tolerance = 1e-7;
 /// Length, divided by the rod length: a shorter part in contact becomes a point.
 constexpr double shortest_part = 1e-6;
 /// Length, divided by the rod length. A contact is extended to include the point of largest depth
 /// if that is less than twice this length away, and by at most half of this length beyond it.
-constexpr double first_part = 0.01;
+constexpr double contact_extension = 0.01;
 /// Length between two contacts, divided by the rod length, and rise of the free part between them,
 /// divided by its length, below which both contacts are joined.
-constexpr double short_gap = 0.02;
+constexpr double joining_gap = 0.02;
 constexpr double least_rise = 1e-3;
 
 /// Returns the largest clearance between two arc lengths.
@@ -179,7 +180,7 @@ class Contacts {
       : solution_(solution),
         span_(solution.model->span()),
         shape_(solution.model->shape(solution.x)),
-        pull_(-strongest_pull * (1 + load + solution.multipliers.norm())),
+        pull_(-tensile_tolerance * (1 + load + solution.multipliers.norm())),
         resolution_(resolution),
         contacts_(span_.contacts) {}
 
@@ -191,8 +192,8 @@ class Contacts {
     }
     release_tensile();
     join();
-    unlike_ = wrong_;
-    const double depth = resolution_ == Resolution::resolved ? deepest : deepest_coarse;
+    has_changed_ = wrong_;
+    const double depth = resolution_ == Resolution::resolved ? deepest : coarse_contact_tolerance;
     for (const GapMinimum& lowest : gap_minima(span_, shape_, -depth * span_.length)) {
       wrong_ = true;
       add(lowest);
@@ -218,7 +219,7 @@ class Contacts {
       const double length = contact.end - contact.begin;
       const bool pulled_along =
           resolution_ == Resolution::resolved && force.least_pressure * length < pull_;
-      const bool lifted = force.least_inner < pull_ || pulled_along;
+      const bool lifted = force.least_inner_force < pull_ || pulled_along;
       // The rod carries no force beyond a free end.
       const bool begin_pulls = contact.begin > 0 && force.begin < pull_;
       const bool end_pulls = contact.end < span_.length && force.end < pull_;
@@ -230,12 +231,12 @@ class Contacts {
         // The obstacle pushes only at the ends: the rod leaves the obstacle between them.
         const bool inside = contact.begin > 0 && contact.end < span_.length;
         if (inside && pulled_along && !begin_pulls && !end_pulls &&
-            length > short_gap * span_.length) {
+            length > joining_gap * span_.length) {
           Span::Contact first = contact;
           first.end = first.begin;
           kept.push_back(first);
           at = contact.end;
-          split_.push_back(at);
+          second_split_points_.push_back(at);
         }
         contact.begin = contact.end = at;
       }
@@ -249,8 +250,9 @@ class Contacts {
     for (std::size_t i = 0; i + 1 < contacts_.size();) {
       Span::Contact& here = contacts_[i];
       const Span::Contact& next = contacts_[i + 1];
-      const bool split = std::find(split_.begin(), split_.end(), next.begin) != split_.end();
-      if (split || !are_one(here, next)) {
+      const bool split = std::find(second_split_points_.begin(), second_split_points_.end(),
+                                   next.begin) != second_split_points_.end();
+      if (split || !should_join(here, next)) {
         ++i;
         continue;
       }
@@ -273,12 +275,12 @@ class Contacts {
         contact.end = length;
         return;
       }
-      const double reach = first_part * length;
+      const double reach = contact_extension * length;
       const bool beside =
           lowest.s > contact.begin - 2 * reach && lowest.s < contact.end + 2 * reach;
       if (!beside) continue;
       // Near a contact that has just changed the present shape is not meaningful.
-      if (unlike_) return;
+      if (has_changed_) return;
       // A point that becomes a part has its ends closer than the point of largest depth.
       const double away = std::max({contact.begin - lowest.s, lowest.s - contact.end, 0.0});
       const bool is_short = contact.end - contact.begin < reach;
@@ -295,12 +297,12 @@ class Contacts {
 
   /// Whether a contact and the next one should be joined: they are with the same feature of the
   /// same obstacle, and between them the rod hardly leaves it or is within it.
-  [[nodiscard]] bool are_one(const Span::Contact& here, const Span::Contact& next) const {
+  [[nodiscard]] bool should_join(const Span::Contact& here, const Span::Contact& next) const {
     if (here.obstacle.index != next.obstacle.index || here.feature != next.feature) return false;
     const double gap = next.begin - here.end;
     const double rise = highest(shape_, here.obstacle, here.end, next.begin);
     // A shorter free part could not be resolved.
-    return rise < 0 || (gap < short_gap * span_.length && rise < least_rise * gap);
+    return rise < 0 || (gap < joining_gap * span_.length && rise < least_rise * gap);
   }
 
   const SpanSolution& solution_;
@@ -309,9 +311,10 @@ class Contacts {
   double pull_;
   Resolution resolution_;
   std::vector<Span::Contact> contacts_;
-  std::vector<double> split_;  // second points of parts that were split into two points
+  std::vector<double>
+      second_split_points_;  // second points of parts that were split into two points
   bool wrong_ = false;
-  bool unlike_ = false;  // contacts_ differ from the contacts of the shape
+  bool has_changed_ = false;  // contacts_ differ from the contacts of the shape
 };
 
 }  // namespace
@@ -323,7 +326,7 @@ Clearance clearance_at(const obstacle::Body& body, const SpanSamples& samples, E
           gap.gradient.dot(samples.curvature.col(i)) + t.dot(gap.hessian * t)};
 }
 
-std::vector<std::size_t> near_points(
+std::vector<std::size_t> points_near_obstacle(
     const std::vector<double>& s, std::size_t stride, double most,
     const std::function<Eigen::VectorXd(const std::vector<double>& s)>& clearances) {
   std::vector<double> coarse;
@@ -345,7 +348,7 @@ std::vector<GapMinimum> gap_minima(const Span& span, const SpanShape& shape, dou
   // Half a coarse interval, plus one neighbouring point and the sag between points.
   const double most = below + (static_cast<double>(coarse_stride) / 2 + 3) * s[1];
   std::vector<std::size_t> evaluated =
-      near_points(s, coarse_stride, most, [&](const std::vector<double>& coarse) {
+      points_near_obstacle(s, coarse_stride, most, [&](const std::vector<double>& coarse) {
         const SpanSamples samples = shape.sample(coarse);
         Eigen::VectorXd least = Eigen::VectorXd::Constant(samples.points.cols(), not_evaluated);
         for (const Span::Obstacle& obstacle : span.rigid_obstacles) {
@@ -370,16 +373,16 @@ std::vector<GapMinimum> gap_minima(const Span& span, const SpanShape& shape, dou
       clearance[static_cast<Eigen::Index>(evaluated[k])] = found_near[static_cast<Eigen::Index>(k)];
     }
     for (Eigen::Index i = 0; i < grid_points; ++i) {
-      const bool falls_to = i == 0 || clearance[i] < clearance[i - 1];
-      const bool rises_from = i + 1 == grid_points || clearance[i] <= clearance[i + 1];
-      if (!falls_to || !rises_from || clearance[i] > below + 2 * sag) continue;
+      const bool is_decreasing = i == 0 || clearance[i] < clearance[i - 1];
+      const bool is_increasing = i + 1 == grid_points || clearance[i] <= clearance[i + 1];
+      if (!is_decreasing || !is_increasing || clearance[i] > below + 2 * sag) continue;
       const double low = s[static_cast<std::size_t>(std::max<Eigen::Index>(0, i - 1))];
       const double high = s[static_cast<std::size_t>(std::min(grid_points - 1, i + 1))];
       const double at = s[static_cast<std::size_t>(i)];
-      GapMinimum lowest = lowest_between(obstacle, shape, low, at, high);
+      GapMinimum lowest = smallest_clearance(obstacle, shape, low, at, high);
       if (lowest.clearance < below) found.push_back(std::move(lowest));
     }
-    add_beside_contacts(span, obstacle, shape, below, h, found);
+    add_minima_beside_contacts(span, obstacle, shape, below, h, found);
   }
   std::sort(found.begin(), found.end(), [](const auto& a, const auto& b) { return a.s < b.s; });
   return found;

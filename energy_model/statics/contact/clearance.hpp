@@ -28,7 +28,7 @@ struct Clearance {
 /// clearance above `most` minus half a coarse interval.
 /// @param s           arc lengths of the grid, equally spaced
 /// @param clearances  returns the smallest clearance at each of the given arc lengths
-[[nodiscard]] std::vector<std::size_t> near_points(
+[[nodiscard]] std::vector<std::size_t> points_near_obstacle(
     const std::vector<double>& s, std::size_t stride, double most,
     const std::function<Eigen::VectorXd(const std::vector<double>& s)>& clearances);
 
@@ -62,7 +62,7 @@ Penetration judge_penetration(const Problem& problem, Equilibrium& equilibrium);
 /// length: rounding.
 inline constexpr double deepest = 1e-9;
 /// Largest depth, likewise, while coefficients may be missing.
-inline constexpr double deepest_coarse = 1e-6;
+inline constexpr double coarse_contact_tolerance = 1e-6;
 
 /// Whether a shape has all coefficients that it needs; before that the pressure on a part is not
 /// meaningful.
@@ -73,7 +73,7 @@ enum class Resolution {
 
 /// Checks whether the contacts are those of an equilibrium: no obstacle pulls (concentrated forces
 /// and pressures are above -1e-7 of all forces), and no point is deeper than `deepest`
-/// (`deepest_coarse`) rod lengths within one.
+/// (`coarse_contact_tolerance`) rod lengths within one.
 /// @return std::nullopt if so; otherwise the contacts to try next: points that pull are released,
 ///   parts that pull at an end or are too short become a point, parts that pull between their ends
 ///   become two points, contacts that meet are joined, and contacts are added where the rod is

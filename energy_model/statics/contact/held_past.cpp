@@ -16,17 +16,17 @@ constexpr std::size_t most_spans = 10;
 
 /// Distance from a body's middle at which a shape passes it, divided by half of the body's size
 /// there.
-constexpr double beside_body = 1.1;
+constexpr double passing_distance = 1.1;
 
 /// Length of rod on the path past a body to a free end, divided by the path's length; > 1, because
 /// without slack the initial guess would be a taut rod.
-constexpr double slack_of_path = 1.01;
+constexpr double path_slack = 1.01;
 
 /// Length, divided by the span's length, below which a length counts as rounding.
 constexpr double rounding_length = 1e-9;
 
 /// An interval of a span between two neighbouring grips, or from the outermost grip to a free end.
-struct Reach {
+struct PathInterval {
   double from_s = 0;       ///< arc length of the grip at which a path past a body begins
   double length = 0;       ///< length of this part of the rod
   double sense = 1;        ///< 1 if arc lengths increase along the path, else -1
@@ -38,13 +38,13 @@ struct Reach {
 /// Points that the rod passes, in order from Reach::from.
 using PathPoints = std::vector<Eigen::Vector3d>;
 
-std::vector<Reach> reaches_of(const Span& span) {
+std::vector<PathInterval> path_intervals(const Span& span) {
   std::vector<Span::Hold> grips = {{span.anchor, Eigen::Vector3d::Zero()}};
   grips.insert(grips.end(), span.holds.begin(), span.holds.end());
   std::stable_sort(grips.begin(), grips.end(),
                    [](const auto& a, const auto& b) { return a.at < b.at; });
   const double shortest = rounding_length * span.length;
-  std::vector<Reach> reaches;
+  std::vector<PathInterval> reaches;
   for (std::size_t i = 0; i + 1 < grips.size(); ++i) {
     reaches.push_back({grips[i].at, grips[i + 1].at - grips[i].at, 1, grips[i].offset, true,
                        grips[i + 1].offset});
@@ -62,7 +62,7 @@ std::vector<Reach> reaches_of(const Span& span) {
 
 /// Returns the middle of a body; along an axis on which the body is endless, that of a nearby
 /// point.
-Eigen::Vector3d middle_of(const obstacle::Body& body, const Eigen::Vector3d& near) {
+Eigen::Vector3d body_middle(const obstacle::Body& body, const Eigen::Vector3d& near) {
   Eigen::Vector3d local = body.axes().transpose() * (near - body.centre());
   const Eigen::Vector3d middle = (body.lower() + body.upper()) / 2;
   for (Eigen::Index axis = 0; axis < 3; ++axis) {
@@ -89,11 +89,11 @@ double half_size(const obstacle::Body& body, const Eigen::Vector3d& direction) {
 /// endless along the path or on two axes.
 std::optional<Eigen::Vector3d> side_of_path(const Span& span, const obstacle::Body& body,
                                             const Eigen::Vector3d& along) {
-  std::vector<Eigen::Vector3d> endless;
+  std::vector<Eigen::Vector3d> infinite_axes;
   for (Eigen::Index axis = 0; axis < 3; ++axis) {
-    if (!std::isfinite(body.lower()[axis])) endless.emplace_back(body.axes().col(axis));
+    if (!std::isfinite(body.lower()[axis])) infinite_axes.emplace_back(body.axes().col(axis));
   }
-  if (endless.size() > 1) return std::nullopt;
+  if (infinite_axes.size() > 1) return std::nullopt;
   Eigen::Vector3d side = Eigen::Vector3d::UnitZ().cross(along);
   if (!span.planar) {
     Eigen::Vector3d pull = span.weight_between(0, span.length);
@@ -101,7 +101,7 @@ std::optional<Eigen::Vector3d> side_of_path(const Span& span, const obstacle::Bo
     side = pull - pull.dot(along) * along;
     if (!(side.norm() > rounding_length * (1 + pull.norm()))) side = along.unitOrthogonal();
   }
-  if (!endless.empty()) side = endless.front().cross(along);
+  if (!infinite_axes.empty()) side = infinite_axes.front().cross(along);
   if (!(side.norm() > rounding_length)) return std::nullopt;
   return side.normalized();
 }
@@ -112,23 +112,26 @@ std::optional<Eigen::Vector3d> side_of_path(const Span& span, const obstacle::Bo
 /// the body is endless along the path or on two axes.
 /// @param from  last point of the path before the body
 /// @param sense  1 to pass on the side of side_of_path(), -1 to pass on the opposite side
-std::optional<PathPoints> past(const Span& span, const obstacle::Body& body, const Reach& reach,
-                               const Eigen::Vector3d& from, double sense) {
+std::optional<PathPoints> path_past_body(const Span& span, const obstacle::Body& body,
+                                         const PathInterval& reach, const Eigen::Vector3d& from,
+                                         double sense) {
   const Eigen::Vector3d near = reach.is_closed ? (reach.from + reach.to) / 2 : reach.from;
-  const Eigen::Vector3d middle = middle_of(body, near);
+  const Eigen::Vector3d middle = body_middle(body, near);
   Eigen::Vector3d along = reach.is_closed ? reach.to - reach.from : middle - from;
   if (!(along.norm() > rounding_length * span.length)) along = middle - from;
   if (!(along.norm() > rounding_length * span.length)) return std::nullopt;
   along.normalize();
   const std::optional<Eigen::Vector3d> side = side_of_path(span, body, along);
   if (!side) return std::nullopt;
-  const Eigen::Vector3d beside = middle + sense * beside_body * half_size(body, *side) * *side;
-  if (reach.is_closed) return PathPoints{beside};
-  return PathPoints{beside, beside + half_size(body, along) * along};
+  const Eigen::Vector3d side_point =
+      middle + sense * passing_distance * half_size(body, *side) * *side;
+  if (reach.is_closed) return PathPoints{side_point};
+  return PathPoints{side_point, side_point + half_size(body, along) * along};
 }
 
 /// Returns the span with pins at the points of a path; std::nullopt if the rod is too short for it.
-std::optional<Span> pinned_on_path(const Span& span, const Reach& reach, const PathPoints& path) {
+std::optional<Span> pinned_on_path(const Span& span, const PathInterval& reach,
+                                   const PathPoints& path) {
   std::vector<double> at;
   Eigen::Vector3d last = reach.from;
   double sum = 0;
@@ -137,22 +140,23 @@ std::optional<Span> pinned_on_path(const Span& span, const Reach& reach, const P
     at.push_back(sum);
     last = point;
   }
-  const double whole = reach.is_closed ? sum + (reach.to - last).norm() : sum * slack_of_path;
+  const double whole = reach.is_closed ? sum + (reach.to - last).norm() : sum * path_slack;
   if (!(whole < reach.length)) return std::nullopt;
-  const double per_path = reach.is_closed ? reach.length / whole : slack_of_path;
-  Span held = span;
+  const double per_path = reach.is_closed ? reach.length / whole : path_slack;
+  Span pinned = span;
   for (std::size_t i = 0; i < path.size(); ++i) {
-    held.holds.push_back({.at = reach.from_s + reach.sense * per_path * at[i], .offset = path[i]});
+    pinned.holds.push_back(
+        {.at = reach.from_s + reach.sense * per_path * at[i], .offset = path[i]});
   }
-  std::stable_sort(held.holds.begin(), held.holds.end(),
+  std::stable_sort(pinned.holds.begin(), pinned.holds.end(),
                    [](const auto& a, const auto& b) { return a.at < b.at; });
-  return held;
+  return pinned;
 }
 
 /// Collects the copies with pins past single bodies, then past pairs, up to most_spans.
-class SpansPinnedPast {
+class PinnedSpans {
  public:
-  explicit SpansPinnedPast(const Span& span) : span_(span) {
+  explicit PinnedSpans(const Span& span) : span_(span) {
     for (const Span::SoftObstacle& obstacle : span.soft_obstacles) add_body(obstacle.body);
     for (const Span::Obstacle& obstacle : span.rigid_obstacles) add_body(obstacle.body);
     std::stable_sort(bodies_.begin(), bodies_.end(), [](const auto& a, const auto& b) {
@@ -161,13 +165,13 @@ class SpansPinnedPast {
   }
 
   [[nodiscard]] std::vector<Span> all() && {
-    const std::vector<Reach> reaches = reaches_of(span_);
+    const std::vector<PathInterval> reaches = path_intervals(span_);
     for (const obstacle::Body& body : bodies_) {
-      for (const Reach& reach : reaches) add_past({&body}, reach);
+      for (const PathInterval& reach : reaches) add_spans_past({&body}, reach);
     }
     for (std::size_t i = 0; i < bodies_.size(); ++i) {
       for (std::size_t j = i + 1; j < bodies_.size(); ++j) {
-        for (const Reach& reach : reaches) add_past({&bodies_[i], &bodies_[j]}, reach);
+        for (const PathInterval& reach : reaches) add_spans_past({&bodies_[i], &bodies_[j]}, reach);
       }
     }
     return std::move(spans_);
@@ -179,9 +183,9 @@ class SpansPinnedPast {
   }
 
   /// Adds a copy for each choice of sides.
-  void add_past(std::vector<const obstacle::Body*> row, const Reach& reach) {
+  void add_spans_past(std::vector<const obstacle::Body*> row, const PathInterval& reach) {
     const auto distance = [&](const obstacle::Body* body) {
-      return (middle_of(*body, reach.from) - reach.from).norm();
+      return (body_middle(*body, reach.from) - reach.from).norm();
     };
     std::sort(row.begin(), row.end(),
               [&](const auto* a, const auto* b) { return distance(a) < distance(b); });
@@ -191,14 +195,14 @@ class SpansPinnedPast {
       for (std::size_t k = 0; k < row.size(); ++k) {
         const Eigen::Vector3d& from = path.empty() ? reach.from : path.back();
         const double sense = (sides >> k & 1U) == 0 ? 1 : -1;
-        const std::optional<PathPoints> next = past(span_, *row[k], reach, from, sense);
+        const std::optional<PathPoints> next = path_past_body(span_, *row[k], reach, from, sense);
         if (!next) return;
         path.insert(path.end(), next->begin(), next->end());
       }
       if (!is_clear(path)) continue;
-      std::optional<Span> held = pinned_on_path(span_, reach, path);
-      if (!held) continue;
-      spans_.push_back(*std::move(held));
+      std::optional<Span> pinned = pinned_on_path(span_, reach, path);
+      if (!pinned) continue;
+      spans_.push_back(*std::move(pinned));
     }
   }
 
@@ -219,6 +223,6 @@ class SpansPinnedPast {
 
 }  // namespace
 
-std::vector<Span> pinned_past_obstacles(const Span& span) { return SpansPinnedPast(span).all(); }
+std::vector<Span> pinned_past_obstacles(const Span& span) { return PinnedSpans(span).all(); }
 
 }  // namespace dlo::energy_model

@@ -16,15 +16,15 @@ constexpr double most_segments = 256;
 /// Ratio of Segments::few to Segments::all.
 constexpr double few = 1.0 / 3;
 /// Stretch and penetration under the loads and bending forces, divided by the rod length.
-constexpr double yields = 1e-4;
-constexpr double bending_forces = 40;
+constexpr double penalty_compliance = 1e-4;
+constexpr double penalty_force_scale = 40;
 /// Number of neighbouring segments on an obstacle from which they count as a part in contact
 /// instead of a point.
-constexpr Eigen::Index fewest_lying = 4;
+constexpr Eigen::Index least_contact_segments = 4;
 
 /// Largest distance from the surface, divided by the rod length, at which a grip counts as on it:
 /// rounding.
-constexpr double on_surface = 1e-9;
+constexpr double surface_tolerance = 1e-9;
 
 /// Newton step of a polygon in equilibrium, divided by the rod length: the proof from
 /// solve_polygon().
@@ -53,7 +53,7 @@ Mesh mesh_of(const Span& span, Segments segments) {
   if (mesh.before) mesh.s.push_back(-h);
   mesh.s.push_back(0);
   double begin = 0;
-  for (const double cut : kinks_of(span)) {
+  for (const double cut : kink_positions(span)) {
     if (cut - begin < closest_cuts) continue;
     const double parts = std::max(1.0, std::ceil((cut - begin) / h));
     for (double i = 1; i <= parts; ++i) mesh.s.push_back(begin + (cut - begin) * i / parts);
@@ -65,7 +65,7 @@ Mesh mesh_of(const Span& span, Segments segments) {
 
 /// Returns a block extended into a half-space that its face touches or lies within: a polygon
 /// pushed out of that face would be caught between the block and the half-space.
-obstacle::Body founded(const obstacle::Body& body, const Span& span) {
+obstacle::Body extended_to_half_space(const obstacle::Body& body, const Span& span) {
   constexpr double flush = 1e-6;  // largest height of a flush face [l]
   Eigen::Vector3d lower = body.lower().array() - body.radius();
   Eigen::Vector3d upper = body.upper().array() + body.radius();
@@ -94,12 +94,12 @@ obstacle::Body founded(const obstacle::Body& body, const Span& span) {
                              upper - lower, body.radius());
 }
 
-class Resting {
+class PenaltyRelaxation {
  public:
-  Resting(const Span& span, Segments segments, Descent descent)
+  PenaltyRelaxation(const Span& span, Segments segments, Descent descent)
       : span_(span), descent_(descent), mesh_(mesh_of(span, segments)) {
     const std::size_t count = mesh_.s.size();
-    const double stiff = (bending_forces + span.total_load()) / yields;
+    const double stiff = (penalty_force_scale + span.total_load()) / penalty_compliance;
     problem_.rest_lengths.resize(static_cast<Eigen::Index>(count) - 1);
     for (std::size_t i = 0; i + 1 < count; ++i) {
       problem_.rest_lengths[static_cast<Eigen::Index>(i)] = mesh_.s[i + 1] - mesh_.s[i];
@@ -123,7 +123,7 @@ class Resting {
   }
 
   /// Whether a shape has points within the core of a rigid obstacle other than a half-space.
-  [[nodiscard]] bool goes_through(const TangentField& start) const {
+  [[nodiscard]] bool passes_through_core(const TangentField& start) const {
     const Eigen::Matrix3Xd points = points_of(start);
     return std::any_of(
         span_.rigid_obstacles.begin(), span_.rigid_obstacles.end(), [&](const auto& obstacle) {
@@ -203,7 +203,8 @@ class Resting {
   }
 
   void add_obstacle(const Span::Obstacle& obstacle, double stiffness) {
-    problem_.obstacles.push_back({founded(obstacle.body, span_), stiffness, samples_of(obstacle)});
+    problem_.obstacles.push_back(
+        {extended_to_half_space(obstacle.body, span_), stiffness, samples_of(obstacle)});
   }
 
   [[nodiscard]] Eigen::Index point_at(double at) const {
@@ -327,7 +328,7 @@ class Resting {
     // A grip may hold the rod on the surface; no spring force acts on a fixed point there.
     const auto on = [&](Eigen::Index k) {
       return at[k] >= 0 && at[k] <= span_.length &&
-             (clearance[k] <= 0 || (is_held(span_, at[k]) && clearance[k] <= on_surface));
+             (clearance[k] <= 0 || (is_held(span_, at[k]) && clearance[k] <= surface_tolerance));
     };
     for (Eigen::Index i = 0; i < count; ++i) {
       if (!on(i)) continue;
@@ -335,7 +336,7 @@ class Resting {
       const auto next_to = [&](Eigen::Index k) { return feature[static_cast<std::size_t>(k)]; };
       while (i + 1 < count && on(i + 1) && next_to(i + 1) == next_to(first)) ++i;
       Span::Contact contact{obstacle, at[first], at[i], true, next_to(first)};
-      if (i - first + 1 < fewest_lying * samples) {
+      if (i - first + 1 < least_contact_segments * samples) {
         double depth = 0;
         double moment = 0;
         for (Eigen::Index k = first; k <= i; ++k) {
@@ -371,18 +372,19 @@ TangentField PenaltyPolygon::field() const {
   };
 }
 
-PenaltyPolygon rest_on_obstacles(const Span& span, const TangentField& start, Segments segments,
-                                 const Deadline& deadline, Descent descent) {
-  Resting resting(span, segments, descent);
-  if (!resting.goes_through(start)) return resting.from(start, deadline);
+PenaltyPolygon relax_on_obstacles(const Span& span, const TangentField& start, Segments segments,
+                                  const Deadline& deadline, Descent descent) {
+  PenaltyRelaxation resting(span, segments, descent);
+  if (!resting.passes_through_core(start)) return resting.from(start, deadline);
   TangentField from = start;
   int evaluations = 0;
   for (const double round : {1.0, 0.75, 0.5, 0.25}) {
     Span rounder = span;
     for (Span::Obstacle& obstacle : rounder.rigid_obstacles) {
-      obstacle.body = obstacle.body.rounded(round);
+      obstacle.body = obstacle.body.with_rounded_edges(round);
     }
-    const PenaltyPolygon before = Resting(rounder, segments, descent).from(from, deadline);
+    const PenaltyPolygon before =
+        PenaltyRelaxation(rounder, segments, descent).from(from, deadline);
     evaluations += before.evaluations;
     from = before.field();
   }
@@ -391,9 +393,9 @@ PenaltyPolygon rest_on_obstacles(const Span& span, const TangentField& start, Se
   return result;
 }
 
-PenaltyPolygon rest_refined(const Span& span, const PenaltyPolygon& coarse,
-                            const Deadline& deadline, Descent descent) {
-  return Resting(span, Segments::all, descent).from(coarse, deadline);
+PenaltyPolygon relax_refined(const Span& span, const PenaltyPolygon& coarse,
+                             const Deadline& deadline, Descent descent) {
+  return PenaltyRelaxation(span, Segments::all, descent).from(coarse, deadline);
 }
 
 }  // namespace dlo::energy_model

@@ -57,13 +57,14 @@ enum class Descent {
 /// springs and whose stretch is small. The error is about the square of a segment. If the shape
 /// passes through the core of a block, which would push it out of several faces at once, the block
 /// is replaced by a ball that changes into the block in stages.
-[[nodiscard]] PenaltyPolygon rest_on_obstacles(const Span& span, const TangentField& start,
-                                               Segments segments, const Deadline& deadline,
-                                               Descent descent = Descent::far);
+[[nodiscard]] PenaltyPolygon relax_on_obstacles(const Span& span, const TangentField& start,
+                                                Segments segments, const Deadline& deadline,
+                                                Descent descent = Descent::far);
 
 /// Minimises with all segments, starting from a polygon with few segments in equilibrium.
-[[nodiscard]] PenaltyPolygon rest_refined(const Span& span, const PenaltyPolygon& coarse,
-                                          const Deadline& deadline, Descent descent = Descent::far);
+[[nodiscard]] PenaltyPolygon relax_refined(const Span& span, const PenaltyPolygon& coarse,
+                                           const Deadline& deadline,
+                                           Descent descent = Descent::far);
 
 /// Returns copies of the span with pins next to its obstacles, so that shapes through the pins pass
 /// an obstacle on either side: first single obstacles, nearest to the anchor first, then pairs; at

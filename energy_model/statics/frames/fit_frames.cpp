@@ -14,7 +14,7 @@ namespace {
 
 /// Returns the rotation vector, in body axes and normal to the tangent, that rotates the tangent e3
 /// to v.
-Eigen::Vector2d turn_to(const Eigen::Vector3d& v) {
+Eigen::Vector2d rotation_to(const Eigen::Vector3d& v) {
   const double sine = std::hypot(v.x(), v.y());
   const double angle = std::atan2(sine, v.z());
   if (sine < 1e-12) return {v.z() > 0 ? 0 : std::numbers::pi, 0};
@@ -23,7 +23,7 @@ Eigen::Vector2d turn_to(const Eigen::Vector3d& v) {
 
 /// Returns coefficients whose integral of u comes nearest to these angles (nodes of elements x 2),
 /// and the rotation of a free start.
-Eigen::VectorXd from_angles(const RodFrames& frames, const Eigen::MatrixX2d& angles) {
+Eigen::VectorXd coefficients_from_angles(const RodFrames& frames, const Eigen::MatrixX2d& angles) {
   Eigen::VectorXd x = Eigen::VectorXd::Zero(frames.size());
   const Eigen::Index first = frames.turn_nodes() > 0 ? 1 : 0;
   const LegendreTable& table = *frames.panels().back().table;
@@ -42,7 +42,7 @@ Eigen::VectorXd from_angles(const RodFrames& frames, const Eigen::MatrixX2d& ang
 }
 
 /// Integrates values at the nodes of elements from the start to each node.
-Eigen::VectorXd cumulated(const RodFrames& frames, const Eigen::VectorXd& values) {
+Eigen::VectorXd integrate_to_nodes(const RodFrames& frames, const Eigen::VectorXd& values) {
   Eigen::VectorXd integral(values.size());
   double before = 0;
   for (const RodFrames::Panel& panel : frames.panels()) {
@@ -58,7 +58,7 @@ Eigen::VectorXd cumulated(const RodFrames& frames, const Eigen::VectorXd& values
 }
 
 /// Returns the coefficients of strains at all nodes; those of a free start's rotation stay zero.
-Eigen::VectorXd projected(const RodFrames& frames, const Eigen::MatrixX3d& strains) {
+Eigen::VectorXd project_strains(const RodFrames& frames, const Eigen::MatrixX3d& strains) {
   Eigen::VectorXd x = Eigen::VectorXd::Zero(frames.size());
   for (const RodFrames::Panel& panel : frames.panels()) {
     if (panel.node < frames.turn_nodes()) continue;
@@ -97,13 +97,13 @@ Eigen::VectorXd fit(const RodFrames& frames, const Eigen::Matrix3Xd& tangents, i
   Eigen::Quaterniond frame = frames.start();
   Eigen::Vector2d total = Eigen::Vector2d::Zero();
   for (Eigen::Index q = 0; q < nodes; ++q) {
-    const Eigen::Vector2d turn = turn_to(frame.conjugate() * tangents.col(q));
+    const Eigen::Vector2d turn = rotation_to(frame.conjugate() * tangents.col(q));
     frame = frame * from_rotation_vector({turn.x(), turn.y(), 0});
     total += turn;
     angles.row(q) = total.transpose();
   }
-  Eigen::VectorXd x = from_angles(frames, angles);
-  if (frames.fields() == 3) x -= projected(frames, frames.natural());
+  Eigen::VectorXd x = coefficients_from_angles(frames, angles);
+  if (frames.fields() == 3) x -= project_strains(frames, frames.natural());
   // Newton steps towards the tangents. A small rotation R omega of the frames, without a component
   // about the tangent at the start, comes from strains omega' + u x omega.
   for (int step = 0; step < most_steps; ++step) {
@@ -115,15 +115,15 @@ Eigen::VectorXd fit(const RodFrames& frames, const Eigen::Matrix3Xd& tangents, i
       const Eigen::Vector3d v(scratch.d1.row(node) * tangents.col(q),
                               scratch.d2.row(node) * tangents.col(q),
                               scratch.t.row(node) * tangents.col(q));
-      turns.row(q) = turn_to(v).transpose();
+      turns.row(q) = rotation_to(v).transpose();
       twisting[q] = scratch.u(node, 1) * turns(q, 0) - scratch.u(node, 0) * turns(q, 1);
     }
     if (!(turns.cwiseAbs().maxCoeff() < 1)) break;
-    const Eigen::VectorXd twist = cumulated(frames, twisting);
+    const Eigen::VectorXd twist = integrate_to_nodes(frames, twisting);
     const auto strains = scratch.u.bottomRows(nodes);
-    turns.col(0) += cumulated(frames, strains.col(1).cwiseProduct(twist));
-    turns.col(1) -= cumulated(frames, strains.col(0).cwiseProduct(twist));
-    x += from_angles(frames, turns);
+    turns.col(0) += integrate_to_nodes(frames, strains.col(1).cwiseProduct(twist));
+    turns.col(1) -= integrate_to_nodes(frames, strains.col(0).cwiseProduct(twist));
+    x += coefficients_from_angles(frames, turns);
     // The remaining error is about the square of this correction, which suffices for an initial
     // guess.
     if (turns.cwiseAbs().maxCoeff() < 1e-3) break;
@@ -150,7 +150,7 @@ Eigen::VectorXd rolled(const RodFrames& frames, const Eigen::VectorXd& x,
     strains(node, 1) = c * u[1] - s * u[0] - frames.natural()(node, 1);
     strains(node, 2) = u[2] - frames.natural()(node, 2);
   }
-  Eigen::VectorXd result = projected(frames, strains);
+  Eigen::VectorXd result = project_strains(frames, strains);
   const FittedAngle twist = fit_angle(*frames.panels().back().table, turns, roll, 0.0);
   const Eigen::Index first = frames.turn_nodes() > 0 ? 1 : 0;
   result.segment(2 * frames.columns() + first, frames.columns() - first) += twist.coefficients;

@@ -27,20 +27,20 @@ class FrameHessian {
                                                   const RodFrames::Panel& panel,
                                                   const FrameGradient& f,
                                                   const RodFrames::State& state);
-  void weigh_turns(const RodFrames& frames, const RodFrames::Panel& panel,
-                   const RodFrames::State& state);
+  void compute_rotation_rates(const RodFrames& frames, const RodFrames::Panel& panel,
+                              const RodFrames::State& state);
   void pair_unknowns(const RodFrames::Panel& panel, Eigen::Index fields);
   void add_panel(const RodFrames& frames, const RodFrames::Panel& panel,
                  const Eigen::Matrix3d& later_curvature, const RodFrames::State& state,
                  Eigen::Ref<Eigen::MatrixXd> hessian);
 
-  // Buffers of one panel. Rows of curvatures_ and beyond_ are symmetric 3 x 3 matrices of a node:
-  // xx, yy, zz, xy, xz, yz.
-  Eigen::Matrix<double, Eigen::Dynamic, 6> curvatures_, beyond_;
+  // Buffers of one panel. Rows of curvatures_ and later_curvatures_ are symmetric 3 x 3 matrices of
+  // a node: xx, yy, zz, xy, xz, yz.
+  Eigen::Matrix<double, Eigen::Dynamic, 6> curvatures_, later_curvatures_;
   std::array<Eigen::MatrixX3d, 3> adjoints_, turns_;  // one matrix per field
-  Eigen::MatrixXd pairs_, by_node_, own_;
+  Eigen::MatrixXd pairs_, by_node_, own_block_;
   // Buffers for the coupling with earlier panels.
-  Eigen::MatrixXd before_;
+  Eigen::MatrixXd earlier_coupling_;
   Eigen::Matrix3Xd beside_, turned_;
 };
 

@@ -11,7 +11,7 @@ namespace dlo::energy_model {
 /// curvature has kinks or jumps, and where the boundary layers at a soft rod's clamps have decayed.
 /// On an element the elastic part of a strain is a series in orthonormal Legendre polynomials p_k
 /// on [0, 1], scaled so that its energy is half the sum of the squares of the coefficients.
-struct Piece {
+struct Element {
   double begin = 0;
   double length = 0;
   /// EI about d1 and d2, and GJ, divided by the span's reference stiffness; in the plane only the
@@ -30,9 +30,10 @@ struct Piece {
 };
 
 /// Number of elements before an arc length at which an element begins or ends.
-[[nodiscard]] inline Eigen::Index pieces_before(const std::vector<Piece>& pieces, double s) {
-  return std::count_if(pieces.begin(), pieces.end(),
-                       [s](const Piece& piece) { return piece.begin + piece.length / 2 < s; });
+[[nodiscard]] inline Eigen::Index elements_before(const std::vector<Element>& elements, double s) {
+  return std::count_if(elements.begin(), elements.end(), [s](const Element& element) {
+    return element.begin + element.length / 2 < s;
+  });
 }
 
 }  // namespace dlo::energy_model

@@ -10,7 +10,7 @@
 namespace dlo::energy_model {
 namespace {
 
-bool is_same(const Piece& a, const Piece& b) {
+bool is_same(const Element& a, const Element& b) {
   return a.begin == b.begin && a.length == b.length && a.stiffness == b.stiffness;
 }
 
@@ -20,7 +20,7 @@ double angle_of(const Eigen::Vector3d& direction) {
   return std::atan2(direction.y(), direction.x());
 }
 
-double nearest_turn(double angle, double target) {
+double nearest_equivalent_angle(double angle, double target) {
   constexpr double turn = 2 * std::numbers::pi;
   return angle + turn * std::round((target - angle) / turn);
 }
@@ -29,17 +29,17 @@ void dot_in_plane(const Eigen::MatrixX3d& a, const Eigen::MatrixX3d& b, Eigen::V
   result = a.col(0).cwiseProduct(b.col(0)) + a.col(1).cwiseProduct(b.col(1));
 }
 
-void PlanarFrames::reset(const std::vector<Piece>& pieces, int terms,
+void PlanarFrames::reset(const std::vector<Element>& elements, int terms,
                          std::optional<double> start_theta, const NaturalStrains& natural) {
   const Eigen::Index free_start = start_theta ? 0 : 1;
   // The derivatives of the angles by the unknowns depend only on these values.
   const bool has_angles =
       angle_.size() > 0 && terms == terms_ && free_start == free_start_ &&
-      std::equal(pieces.begin(), pieces.end(), pieces_.begin(), pieces_.end(), is_same);
+      std::equal(elements.begin(), elements.end(), elements_.begin(), elements_.end(), is_same);
   start_theta_ = start_theta.value_or(0);
   natural_ = natural;
   if (!has_angles) {
-    pieces_ = pieces;
+    elements_ = elements;
     terms_ = terms;
     free_start_ = free_start;
     table_ = &legendre_table(terms);
@@ -50,36 +50,38 @@ void PlanarFrames::reset(const std::vector<Piece>& pieces, int terms,
   const Eigen::Index Q = table_->nodes.size();
   natural_angle_.resize(angle_.rows());
   for (Eigen::Index q = 0; q < angle_.rows(); ++q) {
-    const Piece& piece = pieces_[static_cast<std::size_t>(q / Q)];
-    natural_angle_[q] = natural.integral(piece.begin + piece.length * table_->nodes[q % Q]).x();
+    const Element& element = elements_[static_cast<std::size_t>(q / Q)];
+    natural_angle_[q] = natural.integral(element.begin + element.length * table_->nodes[q % Q]).x();
   }
 }
 
 void PlanarFrames::tabulate_angles() {
   const Eigen::Index Q = table_->nodes.size();
-  const Eigen::Index count = std::ssize(pieces_);
+  const Eigen::Index count = std::ssize(elements_);
   angle_.setZero(count * Q, free_start_ + count * terms_);
   if (free_start_ == 1) angle_.col(0).setOnes();
   for (Eigen::Index e = 0; e < count; ++e) {
     const Eigen::Index column = free_start_ + e * terms_;
-    angle_.block(e * Q, column, Q, terms_) = turn_of(e) * table_->integrals.leftCols(terms_);
+    angle_.block(e * Q, column, Q, terms_) =
+        element_rotation(e) * table_->integrals.leftCols(terms_);
     // Only p_0 contributes to the rotation over a whole element.
-    angle_.col(column).tail((count - e - 1) * Q).setConstant(turn_of(e));
+    angle_.col(column).tail((count - e - 1) * Q).setConstant(element_rotation(e));
   }
   angle_transposed_ = angle_.transpose();
 }
 
-Eigen::RowVectorXd PlanarFrames::by_unknown_after(Eigen::Index piece) const {
+Eigen::RowVectorXd PlanarFrames::angle_derivatives_after(Eigen::Index element) const {
   Eigen::RowVectorXd result = Eigen::RowVectorXd::Zero(angle_.cols());
   if (free_start_ == 1) result[0] = 1;
-  for (Eigen::Index e = 0; e <= piece; ++e) result[free_start_ + e * terms_] = turn_of(e);
+  for (Eigen::Index e = 0; e <= element; ++e)
+    result[free_start_ + e * terms_] = element_rotation(e);
   return result;
 }
 
-double PlanarFrames::angle_towards(const Eigen::Vector3d& direction, Eigen::Index piece) const {
-  const double angle = nearest_turn(angle_of(direction), start_theta_);
+double PlanarFrames::angle_towards(const Eigen::Vector3d& direction, Eigen::Index element) const {
+  const double angle = nearest_equivalent_angle(angle_of(direction), start_theta_);
   if (natural_.empty()) return angle;
-  return angle - natural_.integral(pieces_[static_cast<std::size_t>(piece)].end()).x();
+  return angle - natural_.integral(elements_[static_cast<std::size_t>(element)].end()).x();
 }
 
 void PlanarFrames::resize(State& state) const {
@@ -121,9 +123,9 @@ void PlanarFrames::add_hessian(const Eigen::VectorXd& along, State& state,
   const Eigen::Index Q = table_->nodes.size();
   const Eigen::Index K = terms_;
   double later = 0;
-  for (Eigen::Index e = std::ssize(pieces_); e-- > 0;) {
+  for (Eigen::Index e = std::ssize(elements_); e-- > 0;) {
     const auto here = along.segment(e * Q, Q);
-    const double own_turn = turn_of(e);
+    const double own_turn = element_rotation(e);
     const Eigen::Index column = free_start_ + e * K;
     const auto angle = angle_transposed_.block(column, e * Q, K, Q);
     state.scaled = angle * here.asDiagonal();
@@ -134,7 +136,7 @@ void PlanarFrames::add_hessian(const Eigen::VectorXd& along, State& state,
     state.beside[0] += own_turn * later;
     for (Eigen::Index before = -free_start_; before < e; ++before) {
       const bool start = before < 0;
-      const double turn = start ? 1 : turn_of(before);
+      const double turn = start ? 1 : element_rotation(before);
       const Eigen::Index row = start ? 0 : free_start_ + before * K;
       hessian.row(row).segment(column, K) += turn * state.beside.transpose();
       hessian.col(row).segment(column, K) += turn * state.beside;
@@ -152,13 +154,13 @@ std::array<Eigen::MatrixXd, 3> PlanarFrames::tangent_jacobian(const State& state
 void PlanarFrames::subtract_bending(const Eigen::VectorXd& x, const Eigen::VectorXd& weights,
                                     State& state, Eigen::VectorXd& along) const {
   const Eigen::Index Q = table_->nodes.size();
-  for (Eigen::Index e = 0; e < std::ssize(pieces_); ++e) {
-    const Piece& piece = pieces_[static_cast<std::size_t>(e)];
+  for (Eigen::Index e = 0; e < std::ssize(elements_); ++e) {
+    const Element& element = elements_[static_cast<std::size_t>(e)];
     auto u = state.curvature.segment(e * Q, Q);
     multiply(table_->values.leftCols(terms_), x.segment(free_start_ + e * terms_, terms_), u);
-    u *= piece.strain(0);
+    u *= element.strain(0);
     along.segment(e * Q, Q).array() -=
-        piece.stiffness[0] * weights.segment(e * Q, Q).array() * u.array().square();
+        element.stiffness[0] * weights.segment(e * Q, Q).array() * u.array().square();
   }
 }
 
@@ -166,7 +168,7 @@ Eigen::VectorXd PlanarFrames::angles(const Eigen::Matrix3Xd& tangents) const {
   Eigen::VectorXd angles(tangents.cols());
   double previous = free_start_ == 1 ? angle_of(tangents.col(0)) : start_theta_;
   for (Eigen::Index q = 0; q < angles.size(); ++q) {
-    angles[q] = previous = nearest_turn(angle_of(tangents.col(q)), previous);
+    angles[q] = previous = nearest_equivalent_angle(angle_of(tangents.col(q)), previous);
   }
   if (natural_angle_.size() > 0) angles -= natural_angle_;
   return angles;
@@ -174,8 +176,8 @@ Eigen::VectorXd PlanarFrames::angles(const Eigen::Matrix3Xd& tangents) const {
 
 Eigen::VectorXd PlanarFrames::fit(const Eigen::VectorXd& angles) const {
   std::vector<double> turns;
-  turns.reserve(pieces_.size());
-  for (const Piece& piece : pieces_) turns.push_back(piece.angle(0));
+  turns.reserve(elements_.size());
+  for (const Element& element : elements_) turns.push_back(element.angle(0));
   std::optional<double> start;
   if (free_start_ == 0) start = start_theta_;
   const FittedAngle fitted = fit_angle(*table_, turns, angles, start);

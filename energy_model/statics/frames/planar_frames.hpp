@@ -16,7 +16,7 @@ namespace dlo::energy_model {
 
 /// Returns the angle that is nearest to `target` and differs from `angle` by a multiple of 2 pi
 /// [rad].
-[[nodiscard]] double nearest_turn(double angle, double target);
+[[nodiscard]] double nearest_equivalent_angle(double angle, double target);
 
 /// Computes dot products of vectors in the plane x-y, row by row. @param[out] result  one per row
 void dot_in_plane(const Eigen::MatrixX3d& a, const Eigen::MatrixX3d& b, Eigen::VectorXd& result);
@@ -43,7 +43,7 @@ class PlanarFrames {
 
   /// Sets the elements. Nodes are those of legendre_table(terms) on each element.
   /// @param start_theta  angle at the start [rad]; std::nullopt: it is unknown
-  void reset(const std::vector<Piece>& pieces, int terms, std::optional<double> start_theta,
+  void reset(const std::vector<Element>& elements, int terms, std::optional<double> start_theta,
              const NaturalStrains& natural);
   /// Resizes a state; apart from tangent_jacobian() and fit(), nothing else allocates.
   void resize(State& state) const;
@@ -53,10 +53,10 @@ class PlanarFrames {
   /// Derivatives of the nodes' angles by the unknowns, nodes x unknowns.
   [[nodiscard]] const Eigen::MatrixXd& by_unknown() const { return angle_; }
   /// Derivatives of the angle at an element's end by the unknowns.
-  [[nodiscard]] Eigen::RowVectorXd by_unknown_after(Eigen::Index piece) const;
+  [[nodiscard]] Eigen::RowVectorXd angle_derivatives_after(Eigen::Index element) const;
   /// Returns the angle of `direction` (the multiple of 2 pi nearest to the start's angle) minus the
   /// stress-free shape's angle at an element's end [rad].
-  [[nodiscard]] double angle_towards(const Eigen::Vector3d& direction, Eigen::Index piece) const;
+  [[nodiscard]] double angle_towards(const Eigen::Vector3d& direction, Eigen::Index element) const;
 
   /// Computes the tangents and the state. @param[out] tangents  nodes x 3; z is not written
   void evaluate(const Eigen::Ref<const Eigen::VectorXd>& x, Eigen::MatrixX3d& tangents,
@@ -87,13 +87,13 @@ class PlanarFrames {
   [[nodiscard]] Eigen::VectorXd fit(const Eigen::VectorXd& angles) const;
 
  private:
-  [[nodiscard]] double turn_of(Eigen::Index piece) const {
-    return pieces_[static_cast<std::size_t>(piece)].angle(0);
+  [[nodiscard]] double element_rotation(Eigen::Index element) const {
+    return elements_[static_cast<std::size_t>(element)].angle(0);
   }
 
   void tabulate_angles();
 
-  std::vector<Piece> pieces_;
+  std::vector<Element> elements_;
   Eigen::Index terms_ = 0;
   const LegendreTable* table_ = nullptr;
   Eigen::Index free_start_ = 0;  // unknowns of the start, 0 or 1

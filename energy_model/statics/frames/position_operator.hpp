@@ -13,14 +13,14 @@ namespace dlo::energy_model {
 
 /// Weights that give positions of several points of one element as sums over the tangents at the
 /// span's nodes. The weights of other elements' nodes are the same for all of these points.
-class PointsReach {
+class PointOperator {
  public:
-  PointsReach() = default;
+  PointOperator() = default;
   /// @param begin  weights of all nodes for the point where the element begins
   /// @param first  index of the element's first node
   /// @param own    weights of the element's own nodes for the vectors from its begin to the points,
   ///   nodes x points
-  PointsReach(Eigen::VectorXd begin, Eigen::Index first, Eigen::MatrixXd own)
+  PointOperator(Eigen::VectorXd begin, Eigen::Index first, Eigen::MatrixXd own)
       : begin_(std::move(begin)), first_(first), own_(std::move(own)) {}
 
   [[nodiscard]] Eigen::Index points() const { return own_.cols(); }
@@ -33,13 +33,13 @@ class PointsReach {
   }
   /// Returns positions, 3 x points. @param tangents  nodes x 3
   [[nodiscard]] Eigen::Matrix3Xd positions(const Eigen::MatrixX3d& tangents) const {
-    return sums(tangents).transpose();
+    return to_points(tangents).transpose();
   }
   /// Returns Reach^T A, points x columns of A. @param by_node  A, nodes x columns
-  [[nodiscard]] Eigen::MatrixXd sums(const Eigen::MatrixXd& by_node) const;
+  [[nodiscard]] Eigen::MatrixXd to_points(const Eigen::MatrixXd& by_node) const;
   /// Computes Reach B, nodes x columns of B. @param by_point  B, points x columns
   /// @param[out] by_node  nodes x columns
-  void spread(const Eigen::MatrixXd& by_point, Eigen::Ref<Eigen::MatrixXd> by_node) const;
+  void to_nodes(const Eigen::MatrixXd& by_point, Eigen::Ref<Eigen::MatrixXd> by_node) const;
 
  private:
   Eigen::VectorXd begin_;
@@ -48,7 +48,7 @@ class PointsReach {
 };
 
 /// Computes arc lengths and weights of a span's quadrature: the table's rule on each element.
-void tabulate_nodes(const std::vector<Piece>& pieces, const LegendreTable& table,
+void tabulate_nodes(const std::vector<Element>& elements, const LegendreTable& table,
                     Eigen::VectorXd& nodes, Eigen::VectorXd& weights);
 
 /// Weights that give positions of a span's points, relative to the anchor, as sums over the
@@ -56,9 +56,9 @@ void tabulate_nodes(const std::vector<Piece>& pieces, const LegendreTable& table
 class PositionOperator {
  public:
   PositionOperator() = default;
-  PositionOperator(const Span& span, std::vector<Piece> pieces, const LegendreTable& table);
+  PositionOperator(const Span& span, std::vector<Element> elements, const LegendreTable& table);
 
-  [[nodiscard]] const std::vector<Piece>& pieces() const { return pieces_; }
+  [[nodiscard]] const std::vector<Element>& elements() const { return elements_; }
   [[nodiscard]] const Eigen::VectorXd& nodes() const { return nodes_; }
   [[nodiscard]] const Eigen::VectorXd& weights() const { return weights_; }
   /// Returns one sign per element, for the interval from the anchor to an arc length at which an
@@ -68,11 +68,11 @@ class PositionOperator {
 
   /// Returns the weights of the point where an element begins; for the number of elements, of the
   /// span's end.
-  [[nodiscard]] Eigen::VectorXd begin(Eigen::Index piece) const;
+  [[nodiscard]] Eigen::VectorXd begin(Eigen::Index element) const;
   /// Returns the weights of the point where an element begins, as the only point.
-  [[nodiscard]] PointsReach at_begin(Eigen::Index piece) const;
+  [[nodiscard]] PointOperator at_begin(Eigen::Index element) const;
   /// Returns the weights of an element's begin, of its nodes and of its end.
-  [[nodiscard]] PointsReach along(Eigen::Index piece) const;
+  [[nodiscard]] PointOperator along(Eigen::Index element) const;
   /// Returns the weights of the point at arc length s.
   [[nodiscard]] Eigen::VectorXd at(double s) const;
 
@@ -82,10 +82,10 @@ class PositionOperator {
   };
   /// Returns the weights of a point of an element. @param s  arc length in the span; it may lie
   /// slightly outside the element
-  [[nodiscard]] Point at(Eigen::Index piece, double s) const;
+  [[nodiscard]] Point at(Eigen::Index element, double s) const;
 
  private:
-  std::vector<Piece> pieces_;
+  std::vector<Element> elements_;
   const LegendreTable* table_ = nullptr;
   double anchor_ = 0;
   Eigen::VectorXd nodes_, weights_;
@@ -93,29 +93,29 @@ class PositionOperator {
 };
 
 /// PositionOperator::along() for all elements of a span, one after another.
-class SpanReach {
+class SpanPointOperator {
  public:
-  explicit SpanReach(const PositionOperator& reach);
+  explicit SpanPointOperator(const PositionOperator& reach);
 
   [[nodiscard]] Eigen::Index points() const { return weights_.size(); }
   /// Number of points of one element.
-  [[nodiscard]] Eigen::Index piece_points() const { return pieces_.front().points(); }
-  /// Returns the index of the first point of an element. If `piece` is the number of elements,
+  [[nodiscard]] Eigen::Index element_points() const { return elements_.front().points(); }
+  /// Returns the index of the first point of an element. If `element` is the number of elements,
   /// returns the index of the point at the end of the span.
-  [[nodiscard]] Eigen::Index begin(Eigen::Index piece) const {
-    return std::min(piece * piece_points(), points() - 1);
+  [[nodiscard]] Eigen::Index begin(Eigen::Index element) const {
+    return std::min(element * element_points(), points() - 1);
   }
   /// Weights of the span's quadrature at the points; 0 at begins and ends of elements.
   [[nodiscard]] const Eigen::VectorXd& weights() const { return weights_; }
   /// Returns weights(), each multiplied by a quantity per length that is constant on each element.
-  [[nodiscard]] Eigen::VectorXd weighed(const std::vector<double>& per_length) const;
+  [[nodiscard]] Eigen::VectorXd weights_with_density(const std::vector<double>& per_length) const;
   /// Returns Reach^T A, points x columns of A. @param by_node  A, nodes x columns
-  [[nodiscard]] Eigen::MatrixXd sums(const Eigen::MatrixXd& by_node) const;
+  [[nodiscard]] Eigen::MatrixXd to_points(const Eigen::MatrixXd& by_node) const;
   /// Returns Reach B, nodes x columns of B. @param by_point  B, points x columns
-  [[nodiscard]] Eigen::MatrixXd spread(const Eigen::MatrixXd& by_point) const;
+  [[nodiscard]] Eigen::MatrixXd to_nodes(const Eigen::MatrixXd& by_point) const;
 
  private:
-  std::vector<PointsReach> pieces_;
+  std::vector<PointOperator> elements_;
   Eigen::VectorXd weights_;
   Eigen::Index nodes_ = 0;
 };

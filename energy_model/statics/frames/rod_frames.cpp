@@ -10,7 +10,7 @@ namespace dlo::energy_model {
 namespace {
 
 /// Number of coefficients of a free start's rotation: a constant strain over a length of 1.
-constexpr int turn_terms = 1;
+constexpr int free_start_terms = 1;
 
 /// Largest acceptable collocation defect, and limits of its correction. After Magnus steps two
 /// corrections suffice for all strains that the nodes resolve. For other strains a defect remains
@@ -53,7 +53,7 @@ Eigen::Vector4d as_vector(const Eigen::Quaterniond& q) { return {q.w(), q.x(), q
 
 }  // namespace
 
-void RodFrames::reset(const std::vector<Piece>& pieces, int terms, const Eigen::Matrix3d& start,
+void RodFrames::reset(const std::vector<Element>& elements, int terms, const Eigen::Matrix3d& start,
                       bool free_start, const NaturalStrains& natural) {
   start_ = Eigen::Quaterniond(start).normalized();
   fields_ = natural.empty() ? 2 : 3;
@@ -65,20 +65,20 @@ void RodFrames::reset(const std::vector<Piece>& pieces, int terms, const Eigen::
     columns_ += count;
     nodes_ += panels_.back().nodes();
   };
-  if (free_start) add(1, {1, 1, 1}, turn_terms);
+  if (free_start) add(1, {1, 1, 1}, free_start_terms);
   turn_nodes_ = nodes_;
-  pieces_ = pieces.size();
-  for (const Piece& piece : pieces) {
-    const double twist = fields_ == 3 ? piece.strain(2) : 0;
-    add(piece.length, {piece.strain(0), piece.strain(1), twist}, terms);
+  elements_ = elements.size();
+  for (const Element& element : elements) {
+    const double twist = fields_ == 3 ? element.strain(2) : 0;
+    add(element.length, {element.strain(0), element.strain(1), twist}, terms);
   }
   natural_.resize(0, 3);
   if (natural.empty()) return;
   natural_.setZero(nodes_, 3);
-  for (std::size_t e = 0; e < pieces.size(); ++e) {
-    const Panel& panel = panels_[panels_.size() - pieces.size() + e];
+  for (std::size_t e = 0; e < elements.size(); ++e) {
+    const Panel& panel = panels_[panels_.size() - elements.size() + e];
     for (Eigen::Index r = 0; r < panel.nodes(); ++r) {
-      const double s = pieces[e].begin + pieces[e].length * panel.table->nodes[r];
+      const double s = elements[e].begin + elements[e].length * panel.table->nodes[r];
       natural_.row(panel.node + r) = natural.at(s).transpose();
     }
   }
@@ -151,7 +151,8 @@ void RodFrames::resize(State& state) const {
   state.q.resize(nodes_, 4);
   state.u.resize(nodes_, 3);
   state.panel_ends.resize(panels_.size());
-  for (Eigen::MatrixX3d* m : {&state.d1, &state.d2, &state.t, &state.tails}) m->resize(nodes_, 3);
+  for (Eigen::MatrixX3d* m : {&state.d1, &state.d2, &state.t, &state.rest_integrals})
+    m->resize(nodes_, 3);
   // The last panel is the largest.
   const Eigen::Index Q = panels_.back().nodes();
   for (Eigen::MatrixX4d* m : {&state.product, &state.defect, &state.turn}) m->resize(Q, 4);
@@ -187,11 +188,11 @@ void RodFrames::evaluate(const Eigen::Ref<const Eigen::VectorXd>& x, State& stat
     // Gauss' rule integrates by parts: S^T W = w w^T - W S.
     const Eigen::Index Q = panel.nodes();
     const auto t = state.t.middleRows(panel.node, Q);
-    auto tails = state.tails.middleRows(panel.node, Q);
+    auto rest_integrals = state.rest_integrals.middleRows(panel.node, Q);
     const Eigen::Vector3d whole = t.transpose() * panel.table->weights;
-    multiply(panel.table->integration, t, tails);
-    tails = (-tails).rowwise() + whole.transpose();
-    tails.array().colwise() *= panel.table->weights.array();
+    multiply(panel.table->integration, t, rest_integrals);
+    rest_integrals = (-rest_integrals).rowwise() + whole.transpose();
+    rest_integrals.array().colwise() *= panel.table->weights.array();
   }
 }
 
@@ -219,9 +220,9 @@ void RodFrames::moments(const Panel& panel, const FrameGradient& f, const Eigen:
 void RodFrames::add_adjoint(const FrameGradient& f, double sense, State& state,
                             Eigen::Ref<Eigen::VectorXd> gradient) const {
   Eigen::Vector3d later = Eigen::Vector3d::Zero();
-  std::size_t piece = pieces_;
+  std::size_t element = elements_;
   for (auto panel = panels_.rbegin(); panel != panels_.rend(); ++panel) {
-    if (piece > 0 && !f.couples.empty()) later += f.couples[--piece];
+    if (element > 0 && !f.couples.empty()) later += f.couples[--element];
     moments(*panel, f, later, state);
     const Eigen::Index Q = panel->nodes();
     auto along = state.along.topLeftCorner(Q, fields_);
@@ -244,10 +245,10 @@ void RodFrames::end_rotation_jacobian(State& state) const {
   for (const Panel& panel : panels_) end_spins(panel, state);
 }
 
-void RodFrames::couple_adjoint(Eigen::Index piece, const Eigen::Vector3d& couple,
+void RodFrames::couple_adjoint(Eigen::Index element, const Eigen::Vector3d& couple,
                                const State& state,
                                Eigen::Ref<Eigen::RowVectorXd, 0, Eigen::InnerStride<>> row) const {
-  const Panel& last = panels_[panels_.size() - pieces_ + static_cast<std::size_t>(piece)];
+  const Panel& last = panels_[panels_.size() - elements_ + static_cast<std::size_t>(element)];
   const Eigen::Index count = last.column + last.terms;
   row.setZero();
   for (Eigen::Index field = 0; field < fields_; ++field) {
@@ -261,14 +262,14 @@ void RodFrames::position_jacobian(const std::vector<double>& signs, State& state
   // A force along an axis a has the moment v x a, with v the vector to the points beyond; d.(v x a)
   // = a.(d x v).
   Eigen::Vector3d beyond = Eigen::Vector3d::Zero();
-  std::size_t piece = signs.size();
+  std::size_t element = signs.size();
   for (auto panel = panels_.rbegin(); panel != panels_.rend(); ++panel) {
     const Eigen::Index Q = panel->nodes();
     const double length = panel->length;
-    const double sign = panel->node < turn_nodes_ ? 0 : signs[--piece];
+    const double sign = panel->node < turn_nodes_ ? 0 : signs[--element];
     auto v = state.moments.topRows(Q);
     v.noalias() = length * panel->table->weights * beyond.transpose();
-    v += sign * length * length * state.tails.middleRows(panel->node, Q);
+    v += sign * length * length * state.rest_integrals.middleRows(panel->node, Q);
     auto levers = state.levers.topRows(Q);
     for (Eigen::Index field = 0; field < fields_; ++field) {
       const Eigen::MatrixX3d& directors = director(state, field);

@@ -56,7 +56,7 @@ class RodFrames {
     Eigen::MatrixX3d d1, d2, t;  ///< directors
     /// Integral of t from each node to the end of its element, times the node's quadrature weight
     /// on [0, 1], divided by the length of the element.
-    Eigen::MatrixX3d tails;
+    Eigen::MatrixX3d rest_integrals;
     std::vector<Eigen::Quaterniond> panel_ends;  ///< frames at panel ends
     /// Derivatives by x of the rotation of the end's frame, 3 x unknowns, from the last
     /// end_rotation_jacobian().
@@ -74,23 +74,23 @@ class RodFrames {
 
   RodFrames() = default;
   /// @param start  frame of the span's start: columns d1, d2, t
-  RodFrames(const std::vector<Piece>& pieces, int terms, const Eigen::Matrix3d& start,
+  RodFrames(const std::vector<Element>& elements, int terms, const Eigen::Matrix3d& start,
             bool free_start, const NaturalStrains& natural = {}) {
-    reset(pieces, terms, start, free_start, natural);
+    reset(elements, terms, start, free_start, natural);
   }
-  void reset(const std::vector<Piece>& pieces, int terms, const Eigen::Matrix3d& start,
+  void reset(const std::vector<Element>& elements, int terms, const Eigen::Matrix3d& start,
              bool free_start, const NaturalStrains& natural);
 
   /// Number of fields: two, or three with natural strains, even if these are zero.
   [[nodiscard]] Eigen::Index fields() const { return fields_; }
   /// Returns the frame at the end of an element.
-  [[nodiscard]] Eigen::Matrix3d frame_after(const State& state, Eigen::Index piece) const {
-    const auto turns = panels_.size() - pieces_;
-    return state.panel_ends[turns + static_cast<std::size_t>(piece)].toRotationMatrix();
+  [[nodiscard]] Eigen::Matrix3d frame_after(const State& state, Eigen::Index element) const {
+    const auto turns = panels_.size() - elements_;
+    return state.panel_ends[turns + static_cast<std::size_t>(element)].toRotationMatrix();
   }
   /// Panels; that of a free start's rotation comes first.
   [[nodiscard]] const std::vector<Panel>& panels() const { return panels_; }
-  [[nodiscard]] std::size_t pieces() const { return pieces_; }
+  [[nodiscard]] std::size_t elements() const { return elements_; }
   [[nodiscard]] static const Eigen::MatrixX3d& director(const State& state, Eigen::Index field) {
     return field == 0 ? state.d1 : field == 1 ? state.d2 : state.t;
   }
@@ -128,7 +128,7 @@ class RodFrames {
   void end_rotation_jacobian(State& state) const;
   /// Computes the derivatives by x of the work of a couple on the rotation of the frame at an
   /// element's end, from state.ends.
-  void couple_adjoint(Eigen::Index piece, const Eigen::Vector3d& couple, const State& state,
+  void couple_adjoint(Eigen::Index element, const Eigen::Vector3d& couple, const State& state,
                       Eigen::Ref<Eigen::RowVectorXd, 0, Eigen::InnerStride<>> row) const;
 
   /// Computes the derivatives by x of sum_e sign_e int_e t ds over the elements e (the position of
@@ -149,7 +149,7 @@ class RodFrames {
   void end_spins(const Panel& panel, State& state) const;
 
   std::vector<Panel> panels_;
-  std::size_t pieces_ = 0;  // number of elements; their panels are the last ones
+  std::size_t elements_ = 0;  // number of elements; their panels are the last ones
   Eigen::Index fields_ = 2;
   Eigen::MatrixX3d natural_;  // strains at the nodes; empty with two fields
   Eigen::Index columns_ = 0;

@@ -15,8 +15,8 @@ namespace dlo::energy_model {
 namespace {
 
 /// An element with the Legendre series that give any point of it.
-struct PlacedPiece {
-  Piece piece;
+struct PlacedElement {
+  Element element;
   Eigen::Vector3d point = Eigen::Vector3d::Zero();  // position of its begin
   Eigen::Matrix3Xd tangent;                         // 3 x Q
   double theta = 0;                                 // in the plane: the angle at its begin
@@ -36,28 +36,29 @@ class Sampler {
       place_spatial();
     }
     Eigen::Vector3d point = Eigen::Vector3d::Zero();
-    for (PlacedPiece& placed : pieces_) {
+    for (PlacedElement& placed : elements_) {
       placed.point = point;
       // Only p_0 contributes to the integral over a whole element.
-      point += placed.piece.length * placed.tangent.col(0);
-      if (std::abs(placed.piece.end() - shape.anchor) < closest_cuts) anchor_ = point;
+      point += placed.element.length * placed.tangent.col(0);
+      if (std::abs(placed.element.end() - shape.anchor) < closest_cuts) anchor_ = point;
     }
   }
 
-  void look(double at, Eigen::Ref<Eigen::Vector3d> point, Eigen::Ref<Eigen::Vector3d> tangent,
-            Eigen::Ref<Eigen::Vector3d> curvature, Eigen::Matrix3d& frame) {
+  void evaluate_at(double at, Eigen::Ref<Eigen::Vector3d> point,
+                   Eigen::Ref<Eigen::Vector3d> tangent, Eigen::Ref<Eigen::Vector3d> curvature,
+                   Eigen::Matrix3d& frame) {
     std::size_t e = 0;
-    while (e + 1 < pieces_.size() && at > pieces_[e].piece.end()) ++e;
-    const PlacedPiece& placed = pieces_[e];
-    const double length = placed.piece.length;
-    legendre(std::clamp((at - placed.piece.begin) / length, 0.0, 1.0), values_, integrals_);
+    while (e + 1 < elements_.size() && at > elements_[e].element.end()) ++e;
+    const PlacedElement& placed = elements_[e];
+    const double length = placed.element.length;
+    legendre(std::clamp((at - placed.element.begin) / length, 0.0, 1.0), values_, integrals_);
     point = placed.point + length * (placed.tangent * integrals_) - anchor_;
     const auto values = values_.head(shape_.terms);
     if (shape_.planar) {
       const auto theta = coefficients(shape_.theta, 0, e);
       double angle =
-          placed.theta + placed.piece.angle(0) * integrals_.head(shape_.terms).dot(theta);
-      double rate = placed.piece.strain(0) * values.dot(theta);
+          placed.theta + placed.element.angle(0) * integrals_.head(shape_.terms).dot(theta);
+      double rate = placed.element.strain(0) * values.dot(theta);
       if (!shape_.natural.empty()) {
         angle += shape_.natural.integral(at).x();
         rate += shape_.natural.at(at).x();
@@ -71,8 +72,8 @@ class Sampler {
     tangent = frame.col(2);
     const Eigen::Index second = shape_.strains.size() / (shape_.natural.empty() ? 2 : 3);
     double u1 =
-        placed.piece.strain(0) * values.dot(coefficients(shape_.strains, first_strain(), e));
-    double u2 = placed.piece.strain(1) *
+        placed.element.strain(0) * values.dot(coefficients(shape_.strains, first_strain(), e));
+    double u2 = placed.element.strain(1) *
                 values.dot(coefficients(shape_.strains, second + first_strain(), e));
     if (!shape_.natural.empty()) {
       const Eigen::Vector3d natural = shape_.natural.at(at);
@@ -92,55 +93,55 @@ class Sampler {
   }
 
   void place_planar() {
-    PlacedPiece placed;
+    PlacedElement placed;
     placed.theta = shape_.start_theta;
-    for (std::size_t e = 0; e < shape_.pieces.size(); ++e) {
-      placed.piece = shape_.pieces[e];
-      const double turn = placed.piece.angle(0);
+    for (std::size_t e = 0; e < shape_.elements.size(); ++e) {
+      placed.element = shape_.elements[e];
+      const double turn = placed.element.angle(0);
       const Eigen::VectorXd theta = coefficients(shape_.theta, 0, e);
       Eigen::ArrayXd angle =
           placed.theta + turn * (table_.integrals.leftCols(shape_.terms) * theta).array();
       for (Eigen::Index q = 0; q < angle.size() && !shape_.natural.empty(); ++q) {
-        const double s = placed.piece.begin + placed.piece.length * table_.nodes[q];
+        const double s = placed.element.begin + placed.element.length * table_.nodes[q];
         angle[q] += shape_.natural.integral(s).x();
       }
       Eigen::Matrix3Xd weighted = Eigen::Matrix3Xd::Zero(3, table_.nodes.size());
       weighted.row(0) = (table_.weights.array() * angle.cos()).matrix().transpose();
       weighted.row(1) = (table_.weights.array() * angle.sin()).matrix().transpose();
       placed.tangent = weighted * table_.values;
-      pieces_.push_back(placed);
+      elements_.push_back(placed);
       placed.theta += turn * theta[0];
     }
   }
 
   void place_spatial() {
-    const RodFrames frames(shape_.pieces, shape_.terms, shape_.start_frame, shape_.free_start,
+    const RodFrames frames(shape_.elements, shape_.terms, shape_.start_frame, shape_.free_start,
                            shape_.natural);
     RodFrames::State state;
     frames.resize(state);
     frames.evaluate(shape_.strains, state);
     const Eigen::Index Q = table_.nodes.size();
     const Eigen::MatrixXd weighted = table_.weights.asDiagonal() * table_.values;
-    for (std::size_t e = 0; e < shape_.pieces.size(); ++e) {
+    for (std::size_t e = 0; e < shape_.elements.size(); ++e) {
       const Eigen::Index node = frames.turn_nodes() + static_cast<Eigen::Index>(e) * Q;
-      PlacedPiece placed;
-      placed.piece = shape_.pieces[e];
+      PlacedElement placed;
+      placed.element = shape_.elements[e];
       placed.tangent = state.t.middleRows(node, Q).transpose() * weighted;
       placed.frame = state.q.middleRows(node, Q).transpose() * weighted;
-      pieces_.push_back(std::move(placed));
+      elements_.push_back(std::move(placed));
     }
   }
 
   const SpanShape& shape_;
   const LegendreTable& table_;
   Eigen::VectorXd values_, integrals_;
-  std::vector<PlacedPiece> pieces_;
+  std::vector<PlacedElement> elements_;
   Eigen::Vector3d anchor_ = Eigen::Vector3d::Zero();
 };
 
 /// Distances from a layer's origin at which elements end, divided by the layer's length (EI /
 /// force)^(1/2): the layer has decayed by exp(-6) and exp(-24) there.
-constexpr std::array<double, 2> layer_depths = {6, 24};
+constexpr std::array<double, 2> layer_end_distances = {6, 24};
 
 /// Adds cuts where the layers at the grips and loads of a taut segment have decayed.
 void cut_taut(const Segment& segment, const Span& span, std::vector<double>& cuts) {
@@ -151,8 +152,8 @@ void cut_taut(const Segment& segment, const Span& span, std::vector<double>& cut
   }
   kinks.push_back(segment.end);
   for (std::size_t i = 0; i + 1 < kinks.size(); ++i) {
-    cut_beside(kinks[i], 1, layer, kinks[i + 1] - kinks[i], cuts);
-    cut_beside(kinks[i + 1], -1, layer, kinks[i + 1] - kinks[i], cuts);
+    add_cut_beside(kinks[i], 1, layer, kinks[i + 1] - kinks[i], cuts);
+    add_cut_beside(kinks[i + 1], -1, layer, kinks[i + 1] - kinks[i], cuts);
   }
 }
 
@@ -163,10 +164,10 @@ void cut_free_boundaries(const Span& span, double layer, std::vector<double>& cu
   const auto cut = [&](double from, double sense) {
     double room = std::numeric_limits<double>::infinity();
     for (const double other : others) {
-      const double way = sense * (other - from);
-      if (way > closest_cuts) room = std::min(room, way);
+      const double distance = sense * (other - from);
+      if (distance > closest_cuts) room = std::min(room, distance);
     }
-    if (std::isfinite(room)) cut_beside(from, sense, layer, room, cuts);
+    if (std::isfinite(room)) add_cut_beside(from, sense, layer, room, cuts);
   };
   for (const Span::Contact& contact : span.contacts) {
     cut(contact.begin, -1);
@@ -178,8 +179,8 @@ void cut_free_boundaries(const Span& span, double layer, std::vector<double>& cu
 void cut_layers(const Span& span, std::vector<double>& cuts) {
   const double layer = 1 / std::sqrt(std::max(1.0, span.total_load()));
   const double room = span.end_direction ? 0.4 : 0.7;
-  if (layer_depths[1] * layer < room * span.length) {
-    for (const double depth : layer_depths) {
+  if (layer_end_distances[1] * layer < room * span.length) {
+    for (const double depth : layer_end_distances) {
       cuts.push_back(depth * layer);
       if (span.end_direction) cuts.push_back(span.length - depth * layer);
     }
@@ -192,14 +193,15 @@ void cut_layers(const Span& span, std::vector<double>& cuts) {
 
 }  // namespace
 
-void cut_beside(double origin, double sense, double layer, double room, std::vector<double>& cuts) {
-  for (const double depth : layer_depths) {
+void add_cut_beside(double origin, double sense, double layer, double room,
+                    std::vector<double>& cuts) {
+  for (const double depth : layer_end_distances) {
     const double away = depth * layer;
     if (away > 0 && 2.5 * away < room) cuts.push_back(origin + sense * away);
   }
 }
 
-std::vector<double> kinks_of(const Span& span) {
+std::vector<double> kink_positions(const Span& span) {
   std::vector<double> kinks = {0, span.length, span.anchor};
   for (const Span::Hold& hold : span.holds) kinks.push_back(hold.at);
   for (const Span::Load& load : span.loads) kinks.push_back(load.at);
@@ -211,8 +213,8 @@ std::vector<double> kinks_of(const Span& span) {
   return kinks;
 }
 
-std::vector<Piece> pieces_of(const Span& span) {
-  std::vector<double> cuts = kinks_of(span);
+std::vector<Element> elements_of(const Span& span) {
+  std::vector<double> cuts = kink_positions(span);
   for (const Span::Contact& contact : span.contacts) {
     cuts.insert(cuts.end(), {contact.begin, contact.end});
   }
@@ -223,22 +225,22 @@ std::vector<Piece> pieces_of(const Span& span) {
     cuts.insert(cuts.end(), span.cuts.begin(), span.cuts.end());
   }
   std::sort(cuts.begin(), cuts.end());
-  std::vector<Piece> pieces;
+  std::vector<Element> elements;
   double begin = 0;
   for (const double c : cuts) {
     if (c - begin < closest_cuts) continue;
     const double end = span.length - c < closest_cuts ? span.length : c;
-    pieces.push_back({begin, end - begin, span.stiffness});
+    elements.push_back({begin, end - begin, span.stiffness});
     begin = end;
   }
-  for (Piece& piece : pieces) {
-    const double middle = piece.begin + piece.length / 2;
+  for (Element& element : elements) {
+    const double middle = element.begin + element.length / 2;
     for (const Span::Part& part : span.parts) {
       if (middle < part.begin || middle > part.end) continue;
-      piece.stiffness = part.stiffness;
+      element.stiffness = part.stiffness;
     }
   }
-  return pieces;
+  return elements;
 }
 
 Eigen::VectorXd roll_of(const Eigen::Matrix3Xd& tangents, const Eigen::Matrix3Xd& d1) {
@@ -262,8 +264,8 @@ SpanSamples SpanShape::sample(std::span<const double> s) const {
   Eigen::Matrix3d frame = Eigen::Matrix3d::Zero();
   frame(2, 0) = 1;
   for (Eigen::Index i = 0; i < count; ++i) {
-    sampler.look(s[static_cast<std::size_t>(i)], samples.points.col(i), samples.tangents.col(i),
-                 samples.curvature.col(i), frame);
+    sampler.evaluate_at(s[static_cast<std::size_t>(i)], samples.points.col(i),
+                        samples.tangents.col(i), samples.curvature.col(i), frame);
     samples.d1.col(i) = frame.col(0);
   }
   return samples;

@@ -14,7 +14,7 @@ namespace dlo::energy_model {
 /// Divides a span into elements: at grips, loads and section changes, and where the boundary layers
 /// at the clamps of a soft rod and at the ends of its taut segments have decayed by exp(-6) and
 /// exp(-24), so that no element has to resolve a whole layer.
-[[nodiscard]] std::vector<Piece> pieces_of(const Span& span);
+[[nodiscard]] std::vector<Element> elements_of(const Span& span);
 
 /// Smallest distance of two element boundaries; a shorter element could not have a curvature of its
 /// own.
@@ -23,7 +23,8 @@ inline constexpr double closest_cuts = 1e-9;
 /// Adds element boundaries on one side of the origin of a layer where the layer has decayed by
 /// exp(-6) and exp(-24), each if the distance to the next feature exceeds 2.5 times its own.
 /// @param layer  length (EI / force)^(1/2); 0: there is no layer
-void cut_beside(double origin, double sense, double layer, double room, std::vector<double>& cuts);
+void add_cut_beside(double origin, double sense, double layer, double room,
+                    std::vector<double>& cuts);
 
 /// Whether a grip holds the span at s.
 [[nodiscard]] inline bool is_held(const Span& span, double s) {
@@ -32,7 +33,7 @@ void cut_beside(double origin, double sense, double layer, double room, std::vec
 
 /// Returns the arc lengths where strains may have kinks, ascending, each once: ends, grips, loads,
 /// ends of line loads and section changes.
-[[nodiscard]] std::vector<double> kinks_of(const Span& span);
+[[nodiscard]] std::vector<double> kink_positions(const Span& span);
 
 /// Samples of a span's shape, in the span's units and frame.
 struct SpanSamples {
@@ -55,8 +56,8 @@ struct StartShape {
 
   StartShape() = default;
   // NOLINTNEXTLINE(google-explicit-constructor): tangents are most of what a start is
-  StartShape(Eigen::Matrix3Xd along, Eigen::VectorXd ahead = {})
-      : tangents(std::move(along)), roll(std::move(ahead)) {}
+  StartShape(Eigen::Matrix3Xd along, Eigen::VectorXd roll_angles = {})
+      : tangents(std::move(along)), roll(std::move(roll_angles)) {}
 };
 
 /// Function that returns a shape, as initial guess, at M arc lengths of a span.
@@ -72,7 +73,7 @@ struct SpanShape {
   int terms = 0;
   bool planar = true;
   double anchor = 0;
-  std::vector<Piece> pieces;
+  std::vector<Element> elements;
   double start_theta = 0;
   Eigen::VectorXd theta;  ///< terms x pieces
   Eigen::Matrix3d start_frame = Eigen::Matrix3d::Identity();

@@ -154,8 +154,9 @@ inline void reflect(const Columns& a, const double* v, double tau, double* w) {
   }
 }
 
-inline void add_weighed(const WeighedProduct& a, const WeighedProduct& b, const Columns& result) {
-  const auto element = [](const WeighedProduct& of, std::ptrdiff_t row, std::ptrdiff_t column) {
+inline void add_weighted_products(const WeightedProduct& a, const WeightedProduct& b,
+                                  const Columns& result) {
+  const auto element = [](const WeightedProduct& of, std::ptrdiff_t row, std::ptrdiff_t column) {
     const double* left = of.left.data + row;
     const double* right = of.right.data + column;
     return of.weights.data[column * of.weights.stride + row] *
@@ -239,7 +240,7 @@ inline void solve_forward(const ConstColumns& l, double* x, std::ptrdiff_t j) {
   }
 }
 
-inline double sum_of(Lanes lanes) {
+inline double lane_sum(Lanes lanes) {
   for (std::ptrdiff_t half = lane_count / 2; half > 0; half /= 2) {
     for (std::ptrdiff_t lane = 0; lane < half; ++lane) lanes[lane] += lanes[lane + half];
   }
@@ -261,7 +262,7 @@ inline void solve_backward(const ConstColumns& l, double* x, std::ptrdiff_t j) {
     const Lanes known = read_lanes(x + i);
     for (int c = 0; c < width; ++c) sums[c] += read_lanes(columns[c] + i) * known;
   }
-  for (int c = 0; c < width && i > j + width; ++c) y[c] -= sum_of(sums[c]);
+  for (int c = 0; c < width && i > j + width; ++c) y[c] -= lane_sum(sums[c]);
   for (; i < l.rows; ++i) {
     for (int c = 0; c < width; ++c) y[c] -= columns[c][i] * x[i];
   }
@@ -395,7 +396,7 @@ const DenseKernel& dense_kernel() {
                                          solve,
                                          reflect,
                                          turn,
-                                         add_weighed};
+                                         add_weighted_products};
   return kernel;
 }
 

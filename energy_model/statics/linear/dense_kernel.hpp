@@ -16,7 +16,7 @@ struct Columns {
 };
 
 /// The elementwise product weights o (left right^T); `left` and `right` have three columns.
-struct WeighedProduct {
+struct WeightedProduct {
   ConstColumns weights, left, right;
 };
 
@@ -49,7 +49,8 @@ struct DenseKernel {
   /// Computes cosines and sines of `count` angles [rad], accurate to 2e-16 for angles up to 1e6.
   void (*turn)(const double* angles, std::ptrdiff_t count, double* cosines, double* sines);
   /// Computes a + b.
-  void (*add_weighed)(const WeighedProduct& a, const WeighedProduct& b, const Columns& result);
+  void (*add_weighted_products)(const WeightedProduct& a, const WeightedProduct& b,
+                                const Columns& result);
 };
 
 /// Returns the kernel for an instruction set: "baseline", "avx2" or "avx512".

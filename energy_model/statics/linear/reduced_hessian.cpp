@@ -16,20 +16,20 @@ namespace {
 
 /// Smallest element of R's diagonal, divided by the largest one, with which constraints are
 /// independent.
-constexpr double dependent = 1e-10;
+constexpr double independence_tolerance = 1e-10;
 
 /// Returns the largest eigenvalue of a symmetric positive definite tridiagonal matrix, to a
 /// relative 1e-9. Laguerre's method approaches it from above: for a polynomial with real roots it
 /// converges to the largest one without passing it. The polynomial is the product of the pivots of
 /// x - T.
-/// @param beside  elements next to the diagonal
+/// @param off_diagonal  elements next to the diagonal
 double largest_eigenvalue(const Eigen::Ref<const Eigen::VectorXd>& diagonal,
-                          const Eigen::Ref<const Eigen::VectorXd>& beside) {
+                          const Eigen::Ref<const Eigen::VectorXd>& off_diagonal) {
   const Eigen::Index n = diagonal.size();
   double x = 0;
   for (Eigen::Index i = 0; i < n; ++i) {
-    const double before = i > 0 ? std::abs(beside[i - 1]) : 0;
-    const double after = i + 1 < n ? std::abs(beside[i]) : 0;
+    const double before = i > 0 ? std::abs(off_diagonal[i - 1]) : 0;
+    const double after = i + 1 < n ? std::abs(off_diagonal[i]) : 0;
     x = std::max(x, diagonal[i] + before + after);
   }
   if (n < 2) return x;
@@ -43,7 +43,7 @@ double largest_eigenvalue(const Eigen::Ref<const Eigen::VectorXd>& diagonal,
     double slope = 0;
     double bend = 0;
     for (Eigen::Index i = 0; i < n; ++i) {
-      const double b = i > 0 ? beside[i - 1] * beside[i - 1] / (pivot * pivot) : 0;
+      const double b = i > 0 ? off_diagonal[i - 1] * off_diagonal[i - 1] / (pivot * pivot) : 0;
       const double next_bend = b * (bend - 2 * slope * slope / pivot);
       const double next = x - diagonal[i] - b * pivot;
       slope = 1 + b * slope;
@@ -87,20 +87,20 @@ void ReducedHessian::reflect_constraints(const Eigen::MatrixXd& jacobian) {
     }
   }
   const double largest = constraints_ > 0 ? diagonal_.cwiseAbs().maxCoeff() : 1;
-  independent_ = (diagonal_.array().abs() > dependent * largest).all();
+  independent_ = (diagonal_.array().abs() > independence_tolerance * largest).all();
 }
 
 /// Factors Z^T H Z + mu. @return whether it is positive definite
 bool ReducedHessian::factor(double mu, Eigen::MatrixXd& lower) const {
-  const Eigen::Index left = free();
-  lower.resize(padded(left), left);
-  for (Eigen::Index j = 0; j < left; ++j) {
-    const double* const from = turned_.col(constraints_ + j).data() + constraints_;
+  const Eigen::Index free_count = free();
+  lower.resize(padded(free_count), free_count);
+  for (Eigen::Index j = 0; j < free_count; ++j) {
+    const double* const from = rotated_hessian_.col(constraints_ + j).data() + constraints_;
     double* const column = lower.col(j).data();
-    std::fill_n(std::copy_n(from, left, column), lower.rows() - left, 0.0);
+    std::fill_n(std::copy_n(from, free_count, column), lower.rows() - free_count, 0.0);
     column[j] += mu;
   }
-  return dense_kernel().factor({lower.data(), left, left, lower.rows()});
+  return dense_kernel().factor({lower.data(), free_count, free_count, lower.rows()});
 }
 
 void ReducedHessian::constrain(const Eigen::MatrixXd& jacobian) {
@@ -121,7 +121,7 @@ void ReducedHessian::turn(Vector v) const {
 }
 
 /// Replaces v by Q v.
-void ReducedHessian::turn_back(Vector v) const {
+void ReducedHessian::apply_q(Vector v) const {
   for (Eigen::Index i = constraints_; i-- > 0;) reflect(i, v);
 }
 
@@ -134,51 +134,51 @@ void ReducedHessian::solve_triangle(Vector mu) const {
 }
 
 /// Replaces z by (L L^T)^-1 z.
-void ReducedHessian::solve_by(const Eigen::MatrixXd& lower, Vector z) const {
+void ReducedHessian::cholesky_solve(const Eigen::MatrixXd& lower, Vector z) const {
   dense_kernel().solve({lower.data(), free(), free(), lower.rows()}, z.data());
 }
 
 ReducedHessian::Balance ReducedHessian::balance(const Eigen::VectorXd& gradient) {
-  turned_right_ = gradient;
-  turn(turned_right_);
-  Balance result{turned_right_.head(constraints_), turned_right_.tail(free())};
+  rotated_right_ = gradient;
+  turn(rotated_right_);
+  Balance result{rotated_right_.head(constraints_), rotated_right_.tail(free())};
   solve_triangle(result.multipliers);
   return result;
 }
 
-void ReducedHessian::solve_free(Eigen::VectorXd& z) const { solve_by(factor_, z); }
+void ReducedHessian::solve_free(Eigen::VectorXd& z) const { cholesky_solve(factor_, z); }
 
 void ReducedHessian::reflect_and_factor() {
-  n_ = turned_.rows();
+  n_ = rotated_hessian_.rows();
   scratch_.resize(n_);
   for (Eigen::Index i = 0; i < constraints_; ++i) {
-    dense_kernel().reflect(result_columns(turned_), reflections_.col(i).data(), tau_[i],
+    dense_kernel().reflect(result_columns(rotated_hessian_), reflections_.col(i).data(), tau_[i],
                            scratch_.data());
   }
   definite_ = factor(0, factor_);
 }
 
 void ReducedHessian::solve(const Eigen::VectorXd& right, Eigen::VectorXd& step) {
-  const Eigen::Index left = free();
+  const Eigen::Index free_count = free();
   step.resize(right.size());
-  turned_right_ = right.head(n_);
-  turn(turned_right_);
+  rotated_right_ = right.head(n_);
+  turn(rotated_right_);
   auto x = step.head(n_);
   auto y = x.head(constraints_);
-  auto z = x.tail(left);
+  auto z = x.tail(free_count);
   // R^T y = b
   for (Eigen::Index i = 0; i < constraints_; ++i) {
     y[i] = (right[n_ + i] - triangle_.col(i).head(i).dot(y.head(i))) / diagonal_[i];
   }
-  z = turned_right_.tail(left);
-  z.noalias() -= turned_.bottomLeftCorner(left, constraints_) * y;
-  solve_by(factor_, z);
+  z = rotated_right_.tail(free_count);
+  z.noalias() -= rotated_hessian_.bottomLeftCorner(free_count, constraints_) * y;
+  cholesky_solve(factor_, z);
   // R mu = (Q^T H Q) (y; z) - Q^T a, restricted to Y.
   auto mu = step.tail(constraints_);
-  mu.noalias() = turned_.leftCols(constraints_).transpose() * x;
-  mu -= turned_right_.head(constraints_);
+  mu.noalias() = rotated_hessian_.leftCols(constraints_).transpose() * x;
+  mu -= rotated_right_.head(constraints_);
   solve_triangle(mu);
-  turn_back(x);
+  apply_q(x);
 }
 
 /// Runs Lanczos' method on the inverse with full reorthogonalisation. It ends when the largest
@@ -188,11 +188,11 @@ ReducedHessian::Lanczos ReducedHessian::run_lanczos(double settled, Eigen::Index
   // A vector that orthogonalisation shortens by more than this factor is orthogonalised again: its
   // remaining components would grow by the same factor with each step.
   constexpr double much_shorter = 0.5;
-  const Eigen::Index left = free();
-  const Eigen::Index most = std::min(most_steps, left);
-  krylov_.resize(left, most + 1);
+  const Eigen::Index free_count = free();
+  const Eigen::Index most = std::min(most_steps, free_count);
+  krylov_.resize(free_count, most + 1);
   // This start vector has no symmetry, so that it has a component along every eigenvector.
-  for (Eigen::Index i = 0; i < left; ++i) {
+  for (Eigen::Index i = 0; i < free_count; ++i) {
     krylov_(i, 0) = std::sin(1 + 1.7 * static_cast<double>(i));
   }
   krylov_.col(0).normalize();
@@ -200,8 +200,8 @@ ReducedHessian::Lanczos ReducedHessian::run_lanczos(double settled, Eigen::Index
   for (Eigen::Index k = 0; k < most; ++k) {
     auto next = krylov_.col(k + 1);
     next = krylov_.col(k);
-    solve_by(factor_, next);
-    result.along[k] = krylov_.col(k).dot(next);
+    cholesky_solve(factor_, next);
+    result.diagonal[k] = krylov_.col(k).dot(next);
     double size = next.norm();
     for (int pass = 0; pass < 2; ++pass) {
       scratch_.head(k + 1).noalias() = krylov_.leftCols(k + 1).transpose() * next;
@@ -209,16 +209,16 @@ ReducedHessian::Lanczos ReducedHessian::run_lanczos(double settled, Eigen::Index
       const double before = std::exchange(size, next.norm());
       if (size > much_shorter * before) break;
     }
-    result.beside[k] = size;
-    const bool last = k + 1 == most || !(size > 1e-12 * result.along[k]);
+    result.off_diagonal[k] = size;
+    const bool last = k + 1 == most || !(size > 1e-12 * result.diagonal[k]);
     if (!last) next /= size;
     if (!is_time_to_check(k) && !last) continue;
     const double before = result.largest;
-    result.largest = largest_eigenvalue(result.along.head(k + 1), result.beside.head(k));
+    result.largest = largest_eigenvalue(result.diagonal.head(k + 1), result.off_diagonal.head(k));
     const bool done = std::abs(result.largest - before) <= settled * result.largest;
     if (!done && !last) continue;
-    result.along.conservativeResize(k + 1);
-    result.beside.conservativeResize(k);
+    result.diagonal.conservativeResize(k + 1);
+    result.off_diagonal.conservativeResize(k);
     return result;
   }
   return result;
@@ -240,17 +240,19 @@ std::optional<Eigen::VectorXd> ReducedHessian::lowest_mode_of_definite() {
   if (!definite_ || free() == 0) return std::nullopt;
   const Lanczos found = run_lanczos(settled, most_steps);
   Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> eigen;
-  eigen.computeFromTridiagonal(found.along, found.beside);
-  const Eigen::Index steps = found.along.size();
+  eigen.computeFromTridiagonal(found.diagonal, found.off_diagonal);
+  const Eigen::Index steps = found.diagonal.size();
   return Eigen::VectorXd(krylov_.leftCols(steps) * eigen.eigenvectors().col(steps - 1));
 }
 
-Eigen::MatrixXd ReducedHessian::matrix() const { return turned_.bottomRightCorner(free(), free()); }
+Eigen::MatrixXd ReducedHessian::matrix() const {
+  return rotated_hessian_.bottomRightCorner(free(), free());
+}
 
-Eigen::VectorXd ReducedHessian::in_unknowns(const Eigen::VectorXd& v) const {
+Eigen::VectorXd ReducedHessian::to_unknowns(const Eigen::VectorXd& v) const {
   Eigen::VectorXd x = Eigen::VectorXd::Zero(n_);
   x.tail(free()) = v;
-  turn_back(x);
+  apply_q(x);
   return x;
 }
 
@@ -263,10 +265,10 @@ Eigen::VectorXd smallest_eigenvalues(ReducedHessian& hessian, double above) {
       .eigenvalues();
 }
 
-Eigen::VectorXd direction_by_size(ReducedHessian& hessian, Eigen::Index index) {
+Eigen::VectorXd eigenvector_by_magnitude(ReducedHessian& hessian, Eigen::Index index) {
   if (index == 0) {
     if (const std::optional<Eigen::VectorXd> mode = hessian.lowest_mode_of_definite()) {
-      return hessian.in_unknowns(*mode);
+      return hessian.to_unknowns(*mode);
     }
   }
   const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> eigen(hessian.matrix());
@@ -275,20 +277,21 @@ Eigen::VectorXd direction_by_size(ReducedHessian& hessian, Eigen::Index index) {
   std::stable_sort(order.begin(), order.end(), [&](Eigen::Index a, Eigen::Index b) {
     return std::abs(eigen.eigenvalues()[a]) < std::abs(eigen.eigenvalues()[b]);
   });
-  return hessian.in_unknowns(eigen.eigenvectors().col(order.at(static_cast<std::size_t>(index))));
+  return hessian.to_unknowns(eigen.eigenvectors().col(order.at(static_cast<std::size_t>(index))));
 }
 
 bool is_minimum(const Eigen::MatrixXd& hessian) {
   Eigen::MatrixXd shifted = hessian;
-  shifted.diagonal().array() += neutral;
+  shifted.diagonal().array() += zero_eigenvalue_limit;
   return Eigen::LLT<Eigen::Ref<Eigen::MatrixXd>>(shifted).info() == Eigen::Success;
 }
 
 std::optional<Eigen::VectorXd> negative_curvature_direction(const ReducedHessian& hessian) {
   if (hessian.is_definite()) return std::nullopt;
   const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> eigen(hessian.matrix());
-  if (eigen.eigenvalues().size() == 0 || eigen.eigenvalues()[0] > -neutral) return std::nullopt;
-  return hessian.in_unknowns(eigen.eigenvectors().col(0)).normalized();
+  if (eigen.eigenvalues().size() == 0 || eigen.eigenvalues()[0] > -zero_eigenvalue_limit)
+    return std::nullopt;
+  return hessian.to_unknowns(eigen.eigenvectors().col(0)).normalized();
 }
 
 void NewtonSystem::compute(Eigen::MatrixXd& hessian, const Eigen::MatrixXd& jacobian) {
@@ -320,8 +323,8 @@ void NewtonSystem::solve(const Eigen::VectorXd& right, Eigen::VectorXd& step) {
   }
 }
 
-bool NewtonSystem::is_met(const Eigen::VectorXd& right, const Eigen::VectorXd& step,
-                          double longest) {
+bool NewtonSystem::is_solved_by(const Eigen::VectorXd& right, const Eigen::VectorXd& step,
+                                double longest) {
   const Eigen::Index n = hessian().rows();
   const Eigen::Index m = jacobian_.rows();
   left_ = right;
@@ -335,7 +338,7 @@ Eigen::VectorXd NewtonSystem::minimum_norm_step(const Eigen::VectorXd& right) {
   if (!orthogonal_) {
     const Eigen::MatrixXd system = whole();
     orthogonal_.emplace(system.rows(), system.cols());
-    orthogonal_->setThreshold(neutral / std::max(1.0, system.cwiseAbs().maxCoeff()));
+    orthogonal_->setThreshold(zero_eigenvalue_limit / std::max(1.0, system.cwiseAbs().maxCoeff()));
     orthogonal_->compute(system);
   }
   return orthogonal_->solve(right);

@@ -26,12 +26,12 @@ class ReducedHessian {
   /// on the constraints (balance()).
   void constrain(const Eigen::MatrixXd& jacobian);
   void compute(const Eigen::MatrixXd& hessian) {
-    turned_ = hessian;
+    rotated_hessian_ = hessian;
     reflect_and_factor();
   }
   /// Sets the Hessian by swapping its storage, without a copy; the content of `hessian` is lost.
   void take(Eigen::MatrixXd& hessian) {
-    turned_.swap(hessian);
+    rotated_hessian_.swap(hessian);
     reflect_and_factor();
   }
 
@@ -50,9 +50,11 @@ class ReducedHessian {
   /// Factors Z^T H Z + mu. @return whether it is positive definite, which solve_shifted() needs
   [[nodiscard]] bool factor_shifted(double mu) { return factor(mu, shifted_); }
   /// Replaces z by (Z^T H Z + mu)^-1 z, with the mu of the last factor_shifted().
-  void solve_shifted(Eigen::VectorXd& z) const { solve_by(shifted_, z); }
+  void solve_shifted(Eigen::VectorXd& z) const { cholesky_solve(shifted_, z); }
   /// Diagonal of Z^T H Z.
-  [[nodiscard]] Eigen::VectorXd diagonal() const { return turned_.diagonal().tail(free()); }
+  [[nodiscard]] Eigen::VectorXd diagonal() const {
+    return rotated_hessian_.diagonal().tail(free());
+  }
 
   /// Whether Z^T H Z is positive definite (true if no direction is free) and the constraints are
   /// independent, which solve() requires.
@@ -73,11 +75,11 @@ class ReducedHessian {
   [[nodiscard]] std::optional<Eigen::VectorXd> lowest_mode_of_definite();
 
   /// H; only valid without constraints.
-  [[nodiscard]] const Eigen::MatrixXd& unconstrained() const { return turned_; }
+  [[nodiscard]] const Eigen::MatrixXd& unconstrained() const { return rotated_hessian_; }
   /// Z^T H Z, free x free.
   [[nodiscard]] Eigen::MatrixXd matrix() const;
   /// Returns Z v, a vector of free directions in the unknowns.
-  [[nodiscard]] Eigen::VectorXd in_unknowns(const Eigen::VectorXd& v) const;
+  [[nodiscard]] Eigen::VectorXd to_unknowns(const Eigen::VectorXd& v) const;
 
  private:
   [[nodiscard]] Eigen::Index free() const { return n_ - constraints_; }
@@ -85,15 +87,15 @@ class ReducedHessian {
   using Vector = Eigen::Ref<Eigen::VectorXd>;
   void reflect(Eigen::Index i, Vector& v) const;
   void turn(Vector v) const;
-  void turn_back(Vector v) const;
+  void apply_q(Vector v) const;
   void solve_triangle(Vector mu) const;
-  void solve_by(const Eigen::MatrixXd& lower, Vector z) const;
+  void cholesky_solve(const Eigen::MatrixXd& lower, Vector z) const;
   void reflect_and_factor();
   [[nodiscard]] bool factor(double mu, Eigen::MatrixXd& lower) const;
   /// Tridiagonal matrix of Lanczos' method on the inverse of Z^T H Z; its vectors are in krylov_.
   struct Lanczos {
-    Eigen::VectorXd along, beside;  // diagonal and off-diagonal
-    double largest = 0;             // largest eigenvalue
+    Eigen::VectorXd diagonal, off_diagonal;  // diagonal and off-diagonal
+    double largest = 0;                      // largest eigenvalue
   };
   [[nodiscard]] Lanczos run_lanczos(double settled, Eigen::Index most_steps);
 
@@ -101,16 +103,16 @@ class ReducedHessian {
   bool definite_ = false, independent_ = false;
   Eigen::MatrixXd reflections_;  // v of 1 - tau v v^T, n x m, the first v_i of each zero
   Eigen::VectorXd tau_, diagonal_;
-  Eigen::MatrixXd triangle_;  // R above its diagonal
-  Eigen::MatrixXd turned_;    // Q^T H Q
-  Eigen::MatrixXd factor_;    // L
-  Eigen::MatrixXd shifted_;   // L of a shifted matrix
-  Eigen::VectorXd scratch_, turned_right_;
+  Eigen::MatrixXd triangle_;         // R above its diagonal
+  Eigen::MatrixXd rotated_hessian_;  // Q^T H Q
+  Eigen::MatrixXd factor_;           // L
+  Eigen::MatrixXd shifted_;          // L of a shifted matrix
+  Eigen::VectorXd scratch_, rotated_right_;
   Eigen::MatrixXd krylov_;
 };
 
 /// Magnitude below which an eigenvalue counts as zero.
-inline constexpr double neutral = 1e-7;
+inline constexpr double zero_eigenvalue_limit = 1e-7;
 
 /// Returns the smallest eigenvalue of the reduced Hessian, overestimated by at most 1 %, as the
 /// only element if it is positive and exceeds `above`; otherwise all eigenvalues in ascending
@@ -119,13 +121,14 @@ inline constexpr double neutral = 1e-7;
 
 /// Returns the eigenvector (in the unknowns, unit length) of the eigenvalue that is number `index`
 /// by magnitude, counted from 0 at the smallest.
-[[nodiscard]] Eigen::VectorXd direction_by_size(ReducedHessian& hessian, Eigen::Index index);
+[[nodiscard]] Eigen::VectorXd eigenvector_by_magnitude(ReducedHessian& hessian, Eigen::Index index);
 
-/// Whether no eigenvalue of a symmetric matrix is below -`neutral`; only the lower half is read.
+/// Whether no eigenvalue of a symmetric matrix is below -`zero_eigenvalue_limit`; only the lower
+/// half is read.
 [[nodiscard]] bool is_minimum(const Eigen::MatrixXd& hessian);
 
 /// Returns the unit vector of the unknowns along the eigenvector of the smallest eigenvalue, if
-/// that is at most -`neutral`; else std::nullopt.
+/// that is at most -`zero_eigenvalue_limit`; else std::nullopt.
 [[nodiscard]] std::optional<Eigen::VectorXd> negative_curvature_direction(
     const ReducedHessian& hessian);
 
@@ -142,7 +145,7 @@ class NewtonSystem {
   void compute(Eigen::MatrixXd& hessian, const Eigen::MatrixXd& jacobian);
 
   /// Whether the last compute() had these numbers of unknowns and constraints.
-  [[nodiscard]] bool is_of(Eigen::Index unknowns, Eigen::Index constraints) const {
+  [[nodiscard]] bool has_size(Eigen::Index unknowns, Eigen::Index constraints) const {
     return hessian().rows() == unknowns && jacobian_.rows() == constraints;
   }
   [[nodiscard]] const Eigen::MatrixXd& hessian() const {
@@ -156,8 +159,8 @@ class NewtonSystem {
 
   /// Whether a step solves the system to 1e-6 of the norm of `right`, and its x is no longer than
   /// `longest`.
-  [[nodiscard]] bool is_met(const Eigen::VectorXd& right, const Eigen::VectorXd& step,
-                            double longest);
+  [[nodiscard]] bool is_solved_by(const Eigen::VectorXd& right, const Eigen::VectorXd& step,
+                                  double longest);
 
   /// Returns the minimum-norm least-squares solution, which has no component along near-null modes.
   [[nodiscard]] Eigen::VectorXd minimum_norm_step(const Eigen::VectorXd& right);

@@ -13,7 +13,7 @@ namespace dlo::energy_model {
 namespace {
 
 /// Residual, relative to the scale of forces, up to which it may consist of rounding errors.
-constexpr double last_residual = 1e-8;
+constexpr double rounding_residual = 1e-8;
 
 /// Contraction rate of steps with a factor of another point up to which that factor is kept.
 constexpr double fast_contraction = 0.1;
@@ -22,14 +22,14 @@ constexpr double fast_contraction = 0.1;
 constexpr int most_newton_steps = 30;
 constexpr int most_simplified_steps = 10;
 /// Longest step of NewtonMethod::simplified with a factor of its own [rad].
-constexpr double longest_simplified = 10;
+constexpr double longest_simplified_step = 10;
 /// Step at which a factor of another shape is replaced by the shape's own [rad]: the next step,
 /// about the square of this one, is at rounding.
-constexpr double last_borrowed_step = 1e-6;
+constexpr double borrowed_factor_step = 1e-6;
 
 /// Largest step, times 1 + load, after which the factor is reused: the residual still decreases by
 /// about this factor.
-constexpr double factor_reach = 1e-3;
+constexpr double factor_reuse_step = 1e-3;
 
 class NewtonIteration {
  public:
@@ -47,23 +47,23 @@ class NewtonIteration {
   }
 
  private:
-  enum class Outcome { goes_on, equilibrium, singular, diverged };
+  enum class Outcome { continues, equilibrium, singular, diverged };
 
   void iterate() {
     const int most =
         options_.method == NewtonMethod::simplified ? most_simplified_steps : most_newton_steps;
-    for (int step = 0; step < most && std::isfinite(size_); ++step) {
+    for (int step = 0; step < most && std::isfinite(residual_norm_); ++step) {
       if (options_.deadline != nullptr && options_.deadline->passed()) {
-        solution_.residual = size_;
+        solution_.residual = residual_norm_;
         return solution_.finish(SolveStatus::time_limit);
       }
       switch (advance()) {
-        case Outcome::goes_on:
+        case Outcome::continues:
           continue;
         case Outcome::equilibrium:
           return finish();
         case Outcome::singular:
-          solution_.residual = size_;
+          solution_.residual = residual_norm_;
           if (step_.is_minimum()) solution_.eigenvalue_nearest_zero = step_.smallest_eigenvalue();
           return solution_.finish(SolveStatus::near_singular);
         case Outcome::diverged:
@@ -71,14 +71,14 @@ class NewtonIteration {
       }
       break;
     }
-    solution_.residual = size_;
+    solution_.residual = residual_norm_;
     solution_.fail("Newton's method did not reduce the residual to rounding");
   }
 
   void begin();
   [[nodiscard]] Outcome advance();
-  [[nodiscard]] Outcome judge_standstill(double moved);
-  [[nodiscard]] Outcome judge_move(double moved);
+  [[nodiscard]] Outcome handle_rejected_step(double moved);
+  [[nodiscard]] Outcome handle_accepted_step(double moved);
   void finish();
 
   void evaluate();
@@ -88,18 +88,20 @@ class NewtonIteration {
     return residual();
   }
   void move(double length);
-  [[nodiscard]] bool natural_move();
+  [[nodiscard]] bool natural_monotonicity_step();
 
   [[nodiscard]] double scale() const { return scale_of_forces(solution_, options_.load); }
   /// Whether the residual may consist of rounding errors.
-  [[nodiscard]] bool is_at_rounding() const { return size_ <= last_residual * scale(); }
+  [[nodiscard]] bool is_at_rounding() const {
+    return residual_norm_ <= rounding_residual * scale();
+  }
   SpanSolution& solution_;
   const NewtonOptions& options_;
   const SpanEnergy& model_;
   NewtonBuffers& buffers_;
   NewtonStep step_;
   bool step_is_next_ = false;  // buffers_.step is already the step from the present point
-  double size_ = 0;            // norm of the residual
+  double residual_norm_ = 0;   // norm of the residual
   std::shared_ptr<SpanPoint> trial_;
 };
 
@@ -121,9 +123,9 @@ void NewtonIteration::begin() {
           buffers_.here->jacobian.transpose().householderQr().solve(buffers_.here->gradient);
     }
   }
-  size_ = residual();
+  residual_norm_ = residual();
   const bool can_borrow = model_.constraints() > 0 && options_.method != NewtonMethod::corrector;
-  if (can_borrow) step_.borrow();
+  if (can_borrow) step_.use_given_factor();
 }
 
 void NewtonIteration::evaluate() {
@@ -148,50 +150,50 @@ NewtonIteration::Outcome NewtonIteration::advance() {
   }
   if (!std::exchange(step_is_next_, false)) step_.solve();
   const bool ends_on_own = options_.method != NewtonMethod::simplified;
-  if (step_.is_borrowed() && ends_on_own && step_.size() <= last_borrowed_step) {
+  if (step_.is_borrowed() && ends_on_own && step_.size() <= borrowed_factor_step) {
     step_.factor();
     step_.solve();
   }
   const double moved = step_.size();
   solution_.next_step = moved;
-  if (!ends_on_own && !step_.is_borrowed() && !(moved <= longest_simplified)) {
+  if (!ends_on_own && !step_.is_borrowed() && !(moved <= longest_simplified_step)) {
     return Outcome::diverged;
   }
-  if (moved <= finest_step && is_at_rounding()) return Outcome::equilibrium;
-  return natural_move() ? judge_move(moved) : judge_standstill(moved);
+  if (moved <= default_step_tolerance && is_at_rounding()) return Outcome::equilibrium;
+  return natural_monotonicity_step() ? handle_accepted_step(moved) : handle_rejected_step(moved);
 }
 
 /// Decides what to do after a step that no shortening made acceptable and that has been undone.
-NewtonIteration::Outcome NewtonIteration::judge_standstill(double moved) {
+NewtonIteration::Outcome NewtonIteration::handle_rejected_step(double moved) {
   const bool small = is_at_rounding();
   const bool is_own = step_.factor_point() == NewtonStep::FactorPoint::this_point;
   // Only rounding is left; its component along a near-null mode has no meaning.
-  if (small && moved > coarsest_step && !step_.is_minimum() && is_own) {
+  if (small && moved > largest_stagnation_step && !step_.is_minimum() && is_own) {
     step_.solve_by_least_squares();
     solution_.next_step = step_.size();
   }
-  if (small && solution_.next_step <= coarsest_step && !step_.is_borrowed()) {
+  if (small && solution_.next_step <= largest_stagnation_step && !step_.is_borrowed()) {
     return Outcome::equilibrium;
   }
   if (!is_own) {
-    step_.give_up_factor();
-    return Outcome::goes_on;
+    step_.discard_factor();
+    return Outcome::continues;
   }
   return small ? Outcome::singular : Outcome::diverged;
 }
 
-NewtonIteration::Outcome NewtonIteration::judge_move(double moved) {
+NewtonIteration::Outcome NewtonIteration::handle_accepted_step(double moved) {
   step_is_next_ = true;
   solution_.next_step = step_.size();
   const bool borrowed = step_.is_borrowed();
-  const bool goes_on = borrowed && options_.method != NewtonMethod::simplified;
-  const double small = std::max(last_residual, options_.step_tolerance) * scale();
-  if (!goes_on && size_ <= small && solution_.next_step <= options_.step_tolerance) {
+  const bool continues = borrowed && options_.method != NewtonMethod::simplified;
+  const double small = std::max(rounding_residual, options_.step_tolerance) * scale();
+  if (!continues && residual_norm_ <= small && solution_.next_step <= options_.step_tolerance) {
     if (borrowed) {
       // With the factor's own Hessian the error after the last step is far below the next step;
       // with a borrowed factor it is only a fraction of it.
       move(1);
-      size_ = evaluated_residual();
+      residual_norm_ = evaluated_residual();
     }
     return Outcome::equilibrium;
   }
@@ -199,17 +201,18 @@ NewtonIteration::Outcome NewtonIteration::judge_move(double moved) {
   // may be kept. Without constraints the factor itself shows whether the Hessian is positive
   // definite.
   // A yielding obstacle that is touched or left changes the Hessian within any distance.
-  const bool near = moved * (1 + options_.load) <= factor_reach && !model_.has_soft_obstacles();
+  const bool near =
+      moved * (1 + options_.load) <= factor_reuse_step && !model_.has_soft_obstacles();
   const bool shrinks = solution_.next_step < fast_contraction * moved && model_.constraints() > 0;
-  near || shrinks ? step_.reuse() : step_.give_up_factor();
-  return Outcome::goes_on;
+  near || shrinks ? step_.reuse() : step_.discard_factor();
+  return Outcome::continues;
 }
 
 void NewtonIteration::finish() {
-  solution_.residual = size_;
+  solution_.residual = residual_norm_;
   solution_.eigenvalue_nearest_zero =
       step_.is_minimum() ? step_.smallest_eigenvalue() : std::numeric_limits<double>::quiet_NaN();
-  if (!(solution_.multipliers.norm() <= largest_pull * (1 + options_.load))) {
+  if (!(solution_.multipliers.norm() <= largest_grip_force * (1 + options_.load))) {
     return solution_.fail("Newton's method diverged to unbounded forces");
   }
   const bool minimum = step_.is_minimum() || model_.constraints() > 0;
@@ -225,22 +228,23 @@ void NewtonIteration::move(double length) {
 
 /// Moves along the step, shortened by factors of 4 until the next step with the same factor is
 /// shorter (Deuflhard's natural monotonicity test, which does not depend on the relative scale of
-/// gradient and constraints). The next step is left in buffers_.step, the residual in size_. With
-/// constraints the next step is Broyden's, from all whole steps with this factor.
+/// gradient and constraints). The next step is left in buffers_.step, the residual in
+/// residual_norm_. With constraints the next step is Broyden's, from all whole steps with this
+/// factor.
 /// @return whether such a length was found; if not, the solution is unchanged
-bool NewtonIteration::natural_move() {
+bool NewtonIteration::natural_monotonicity_step() {
   constexpr double longest = 2;        // largest step [rad]; longer ones leave the path
   constexpr double least_part = 1e-5;  // smallest part of a step
   std::swap(buffers_.here, trial_);
   buffers_.trial_x = solution_.x;
   buffers_.trial_multipliers = solution_.multipliers;
   buffers_.first_step = buffers_.step;
-  const double length = step_.size_with_forces();
+  const double length = step_.norm_with_multipliers();
   const double moves = step_.size();
   const double first = std::min(1.0, longest / moves);
   // So short a step is not shortened: if the next one is no shorter, both consist of rounding
   // errors.
-  const bool short_enough = moves <= coarsest_step && is_at_rounding();
+  const bool short_enough = moves <= largest_stagnation_step && is_at_rounding();
   const double least = short_enough ? first / 2 : least_part;
   const auto out_of_time = [&] {
     return options_.deadline != nullptr && options_.deadline->passed();
@@ -248,10 +252,10 @@ bool NewtonIteration::natural_move() {
   for (double part = first; part > least && !out_of_time(); part /= 4) {
     buffers_.step = buffers_.first_step;
     move(part);
-    size_ = evaluated_residual();
-    if (std::isfinite(size_)) {
+    residual_norm_ = evaluated_residual();
+    if (std::isfinite(residual_norm_)) {
       step_.solve();
-      if (step_.size_with_forces() < (1 - part / 4) * length) {
+      if (step_.norm_with_multipliers() < (1 - part / 4) * length) {
         // A shortened or deflated step is no valid secant for Broyden's update.
         if (part < 1 || options_.method == NewtonMethod::corrector) {
           buffers_.broyden.clear();
@@ -266,7 +270,7 @@ bool NewtonIteration::natural_move() {
   }
   buffers_.step = buffers_.first_step;
   std::swap(buffers_.here, trial_);
-  size_ = residual();
+  residual_norm_ = residual();
   return false;
 }
 

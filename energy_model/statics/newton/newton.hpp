@@ -63,20 +63,20 @@ class BroydenSteps {
 
 /// Norm of the grips' forces, divided by 1 + weight and loads, above which a result is rejected:
 /// residuals are measured relative to the forces.
-inline constexpr double largest_pull = 1e10;
+inline constexpr double largest_grip_force = 1e10;
 
 /// Length of the next Newton step above which a residual that no longer decreases is not accepted
 /// as a solution [rad].
-inline constexpr double coarsest_step = 1e-8;
+inline constexpr double largest_stagnation_step = 1e-8;
 
 /// Length of the next Newton step at which the iteration ends [rad]; it is a part of the shape's
 /// error.
-inline constexpr double finest_step = 1e-11;
+inline constexpr double default_step_tolerance = 1e-11;
 
 /// Length of the next Newton step at which the iteration ends for a shape that will get more
 /// coefficients anyway [rad]. Its energy error is of the order of the square, so that energies
 /// still distinguish shapes.
-inline constexpr double rough_step = 1e-5;
+inline constexpr double loose_step_tolerance = 1e-5;
 
 enum class NewtonMethod {
   /// Converges to an equilibrium, stable or not. A factor of another shape serves the first steps
@@ -97,7 +97,7 @@ struct NewtonOptions {
   NewtonMethod method = NewtonMethod::newton;
   /// Length of the next step at which the iteration ends [rad], if the residual is at rounding or
   /// as small as this.
-  double step_tolerance = finest_step;
+  double step_tolerance = default_step_tolerance;
   /// Factor of another shape for the first steps between grips; used if its numbers of unknowns and
   /// constraints are the same.
   std::shared_ptr<NewtonFactor> first_factor = nullptr;
@@ -122,9 +122,9 @@ struct NewtonBuffers {
 
 /// Solves for zero gradient of E - mu . c and zero constraint residuals by Newton's method from
 /// solution.x. It ends when the residual is small and the next Newton step, evaluated at the
-/// result, is at most NewtonOptions::step_tolerance, or at most coarsest_step if rounding prevents
-/// a shorter one. A step is shortened while the next step, with the same factor, is not shorter.
-/// Without constraints the Hessian at the end distinguishes a minimum (`converged`) from a
+/// result, is at most NewtonOptions::step_tolerance, or at most largest_stagnation_step if rounding
+/// prevents a shorter one. A step is shortened while the next step, with the same factor, is not
+/// shorter. Without constraints the Hessian at the end distinguishes a minimum (`converged`) from a
 /// `saddle`; with constraints the caller has to examine the second variation. The status is
 /// `near_singular` if the residual is at rounding but the step is not, and `failed` if the residual
 /// does not decrease. The solution keeps the last factor of its own, if there is one. Without

@@ -26,7 +26,7 @@ void NewtonFactors::factor_at(SpanSolution& solution, SpanPoint& at, double load
   solution.model->hessian(at, solution.multipliers, hessian_);
   // Buffers of the same size are reused.
   solution.factor = factors_.take([&](const NewtonFactor& kept) {
-    return kept.system.is_of(hessian_.rows(), at.jacobian.rows());
+    return kept.system.has_size(hessian_.rows(), at.jacobian.rows());
   });
   solution.factor->system.compute(hessian_, at.jacobian);
   solution.factor->scale = scale_of_forces(solution, load);
@@ -34,8 +34,8 @@ void NewtonFactors::factor_at(SpanSolution& solution, SpanPoint& at, double load
   solution.factor->multipliers = solution.multipliers;
 }
 
-void NewtonStep::borrow() {
-  if (!options_.first_factor || !options_.first_factor->system.is_of(
+void NewtonStep::use_given_factor() {
+  if (!options_.first_factor || !options_.first_factor->system.has_size(
                                     buffers_.gradient.size(), solution_.model->constraints())) {
     return;
   }
@@ -52,9 +52,10 @@ void NewtonStep::factor() {
   if (options_.method == NewtonMethod::corrector && !is_minimum()) find_near_null_modes();
 }
 
-/// Finds orthonormal vectors that the system maps to less than `neutral` of their length, by
-/// inverse iteration; the step along them is undetermined. Multipliers are divided by the scale of
-/// forces, as otherwise a constraint that grips hardly satisfy would count as such a vector.
+/// Finds orthonormal vectors that the system maps to less than `zero_eigenvalue_limit` of their
+/// length, by inverse iteration; the step along them is undetermined. Multipliers are divided by
+/// the scale of forces, as otherwise a constraint that grips hardly satisfy would count as such a
+/// vector.
 void NewtonStep::find_near_null_modes() {
   const Eigen::Index m = solution_.model->constraints();
   const Eigen::Index size = buffers_.gradient.size() + m;
@@ -74,7 +75,7 @@ void NewtonStep::find_near_null_modes() {
       shrinks = 1 / v.norm();
       v *= shrinks;
     }
-    if (!(shrinks < neutral)) return;
+    if (!(shrinks < zero_eigenvalue_limit)) return;
     modes.conservativeResize(Eigen::NoChange, found + 1);
     modes.col(found) = v;
   }
@@ -103,7 +104,7 @@ void NewtonStep::solve() {
   // along that mode.
   constexpr double longest = 1e3;
   if (options_.method == NewtonMethod::simplified ||
-      factor_->system.is_met(right, buffers_.step, longest)) {
+      factor_->system.is_solved_by(right, buffers_.step, longest)) {
     return;
   }
   buffers_.step = factor_->system.minimum_norm_step(right);
@@ -139,7 +140,7 @@ double NewtonStep::smallest_eigenvalue() {
   return 1 / grows;
 }
 
-double NewtonStep::size_with_forces() const {
+double NewtonStep::norm_with_multipliers() const {
   const Eigen::Index m = solution_.model->constraints();
   if (m == 0) return size();
   return std::hypot(size(),

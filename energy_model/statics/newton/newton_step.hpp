@@ -18,7 +18,7 @@ class NewtonStep {
       : solution_(solution), options_(options), buffers_(buffers) {}
 
   /// Uses the factor given in the options, if there is one.
-  void borrow();
+  void use_given_factor();
   /// Factors at the present solution.
   void factor();
   /// Returns the point at which the current factor was computed.
@@ -30,7 +30,7 @@ class NewtonStep {
     if (!is_borrowed()) factor_point_ = FactorPoint::earlier_point;
   }
   /// Discards the factor, so that the next step gets a factor of its own point.
-  void give_up_factor() { factor_point_ = FactorPoint::nothing; }
+  void discard_factor() { factor_point_ = FactorPoint::nothing; }
 
   void solve();
   /// Computes the minimum-norm step.
@@ -42,7 +42,7 @@ class NewtonStep {
   /// Norm of the part of the step that moves the unknowns.
   [[nodiscard]] double size() const { return buffers_.step.head(buffers_.gradient.size()).norm(); }
   /// Norm of the step with multipliers, these divided by the scale of forces.
-  [[nodiscard]] double size_with_forces() const;
+  [[nodiscard]] double norm_with_multipliers() const;
 
   /// Whether there are no constraints and the factor's Hessian is positive definite.
   [[nodiscard]] bool is_minimum() const {

@@ -16,7 +16,7 @@ namespace {
 constexpr double longest_accepted = 1.01;
 constexpr double shortest_accepted = 0.75;
 /// Distance of the bounds of mu, divided by the upper one, below which they count as equal.
-constexpr double closed_bounds = 1e-2;
+constexpr double bound_tolerance = 1e-2;
 
 /// Bounds of mu. Up to `low`, H + mu is not positive definite or p is too long; from `high` on, p
 /// is too short.
@@ -30,7 +30,7 @@ struct ShiftBounds {
     return low > 0.1 * high ? (low + high) / 2 : std::sqrt(std::max(low, 1e-4 * high) * high);
   }
   [[nodiscard]] bool are_closed() const {
-    return high - low <= closed_bounds * high || high <= rounding;
+    return high - low <= bound_tolerance * high || high <= rounding;
   }
 };
 
@@ -51,8 +51,8 @@ void extend_along_smallest(const ReducedHessian& hessian, double length, Eigen::
 /// Computes the step if Newton's step is longer than the radius or H is not positive definite:
 /// Newton's method on 1 / |p(mu)|, which is nearly linear in mu.
 /// @param low  lower bound of mu
-Eigen::VectorXd step_to_edge(ReducedHessian& hessian, const Eigen::VectorXd& gradient,
-                             double radius, double low) {
+Eigen::VectorXd boundary_step(ReducedHessian& hessian, const Eigen::VectorXd& gradient,
+                              double radius, double low) {
   constexpr int most_steps = 60;
   const Eigen::VectorXd diagonal = hessian.diagonal();
   ShiftBounds bounds;
@@ -110,26 +110,26 @@ class TrustRegionDescent {
   void run() {
     SpanPoint here;
     solution_.evaluate(solution_.x, here);
-    if (!restore(solution_, here, loosest_gap, scratch_)) {
+    if (!restore_constraints(solution_, here, largest_constraint_residual, scratch_)) {
       solution_.multipliers = multipliers_;
       return solution_.fail("no shape at the positions of the grips was found from this start");
     }
     double radius = options_.radius;
     for (int i = 0; i < options_.max_iterations; ++i) {
       if (options_.deadline != nullptr && options_.deadline->passed()) {
-        keep(here);
+        accept_point(here);
         return solution_.finish(SolveStatus::time_limit);
       }
       linearise(here);
       const std::optional<Eigen::VectorXd> step = best_step(radius);
       if (!step) {
-        keep(here);
+        accept_point(here);
         return solution_.finish(SolveStatus::converged);
       }
       radius = try_step(here, *step, radius);
       if (radius < smallest_radius) break;
     }
-    keep(here);
+    accept_point(here);
     // Newton's method may still converge from here.
     solution_.finish(SolveStatus::roundoff_limited);
   }
@@ -172,14 +172,16 @@ class TrustRegionDescent {
     if (!p) return std::nullopt;
     predicted_ = -(projected_gradient_.dot(*p) + p->dot(reduced_.matrix() * *p) / 2);
     length_ = p->norm();
-    return reduced_.in_unknowns(*p);
+    return reduced_.to_unknowns(*p);
   }
 
   /// Evaluates a step and accepts or rejects it. @return the next radius
   [[nodiscard]] double try_step(SpanPoint& here, const Eigen::VectorXd& step, double radius) {
     solution_.evaluate(here.x + step, trial_);
-    const double gap = std::min(loosest_gap, std::max(1e-13, 1e-2 * length_ * length_));
-    if (!restore(solution_, trial_, gap, scratch_)) return std::min(radius, length_) / 4;
+    const double gap =
+        std::min(largest_constraint_residual, std::max(1e-13, 1e-2 * length_ * length_));
+    if (!restore_constraints(solution_, trial_, gap, scratch_))
+      return std::min(radius, length_) / 4;
     const double before = here.energy - multipliers_.dot(here.residual);
     const double after = trial_.energy - multipliers_.dot(trial_.residual);
     const double rounding = 1e-14 * (1 + std::abs(before) + multipliers_.norm());
@@ -190,7 +192,7 @@ class TrustRegionDescent {
     return ratio < 0.25 ? radius / 2 : radius;
   }
 
-  void keep(const SpanPoint& here) {
+  void accept_point(const SpanPoint& here) {
     solution_.x = here.x;
     solution_.energy = here.energy;
     solution_.multipliers = multipliers_;
@@ -212,7 +214,7 @@ class TrustRegionDescent {
 /// Trust-region radius that ends a minimisation; the multipliers are then updated.
 constexpr double least_penalty_radius = 1e-9;
 /// Norm of the constraints' residual from which Newton's method takes over [l].
-constexpr double close_enough = 1e-7;
+constexpr double newton_handover_residual = 1e-7;
 constexpr int most_updates = 40;
 
 class AugmentedLagrangian {
@@ -231,7 +233,7 @@ class AugmentedLagrangian {
       if (!minimise(std::min(1e-2, last_residual))) break;
       mu_ = forces();
       const double residual = here_.residual.norm();
-      if (residual <= close_enough) return finish(SolveStatus::converged);
+      if (residual <= newton_handover_residual) return finish(SolveStatus::converged);
       if (residual > last_residual / 4)
         kappa_ = std::min(1e7 * (1 + options_.load + options_.stiffness / 1e3), 10 * kappa_);
       last_residual = residual;
@@ -315,8 +317,8 @@ class AugmentedLagrangian {
 
 }  // namespace
 
-bool restore(SpanSolution& solution, SpanPoint& point, double gap, RestoreScratch& scratch,
-             double most_energy) {
+bool restore_constraints(SpanSolution& solution, SpanPoint& point, double gap,
+                         RestoreScratch& scratch, double most_energy) {
   if (solution.model->constraints() == 0) return std::isfinite(point.energy);
   constexpr int most_steps = 60;
   constexpr double longest = 1;  // largest length of a step
@@ -362,10 +364,10 @@ std::optional<Eigen::VectorXd> trust_region_step(ReducedHessian& hessian,
     const double size = newton.norm();
     if (size <= region.least_step) return std::nullopt;
     if (size <= region.radius) return newton;
-  } else if (flat && hessian.factor_shifted(neutral)) {
+  } else if (flat && hessian.factor_shifted(zero_eigenvalue_limit)) {
     return std::nullopt;
   }
-  return step_to_edge(hessian, gradient, region.radius, flat ? neutral : 0);
+  return boundary_step(hessian, gradient, region.radius, flat ? zero_eigenvalue_limit : 0);
 }
 
 void descend_in_trust_region(SpanSolution& solution, const TrustRegionOptions& options) {

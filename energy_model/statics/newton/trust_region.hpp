@@ -13,9 +13,9 @@ namespace dlo::energy_model {
 
 /// Constraint residual from which a descent starts, and the largest one that it leaves between
 /// steps.
-inline constexpr double loosest_gap = 1e-5;
+inline constexpr double largest_constraint_residual = 1e-5;
 
-/// Buffers of restore(), kept from one call to the next.
+/// Buffers of restore_constraints(), kept from one call to the next.
 struct RestoreScratch {
   SpanPoint trial;
   Eigen::MatrixXd square, normal;
@@ -29,9 +29,9 @@ struct RestoreScratch {
 /// @param[in,out] point  evaluated
 /// @param most_energy    energy above which the search is abandoned
 /// @return whether the residual was reduced to `gap`
-[[nodiscard]] bool restore(SpanSolution& solution, SpanPoint& point, double gap,
-                           RestoreScratch& scratch,
-                           double most_energy = std::numeric_limits<double>::infinity());
+[[nodiscard]] bool restore_constraints(
+    SpanSolution& solution, SpanPoint& point, double gap, RestoreScratch& scratch,
+    double most_energy = std::numeric_limits<double>::infinity());
 
 struct TrustRegion {
   double radius = 1;

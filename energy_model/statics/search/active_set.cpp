@@ -26,7 +26,7 @@ constexpr int many_unknowns = 300;
 constexpr double careful_radius = 0.05;
 /// Length, divided by the rod length, below which a part in contact becomes a point; the next
 /// update checks whether the rod is within the obstacle next to it.
-constexpr double shortest_told = 1e-3;
+constexpr double shortest_contact_part = 1e-3;
 
 /// Whether the contacts end where an obstacle without friction requires, which makes the shape an
 /// equilibrium: a remaining slope or moment there would need more than pressure.
@@ -41,19 +41,20 @@ bool meets_free_boundaries(const SpanSolution& solution) {
   constexpr double share = 1e-7;
   for (std::size_t i = 0; i < ends.size(); ++i) {
     if (span.contacts[ends[i].contact].lies()) continue;
-    const MoveLimits room = move_limits(span, ends[i]);
-    const double off = std::abs(residual[static_cast<Eigen::Index>(i)]);
-    if (!(off <= share * std::min(room.down, room.up))) return false;
+    const MoveLimits limits = move_limits(span, ends[i]);
+    const double error = std::abs(residual[static_cast<Eigen::Index>(i)]);
+    if (!(error <= share * std::min(limits.down, limits.up))) return false;
   }
   return true;
 }
 
 /// Solves for the equilibrium with the known contacts, by Newton's method from the known shape.
-SpanSolution next_to_known(const Span& span, const SpanOptions& options, SpanWorkspace& workspace) {
+SpanSolution solve_near_known(const Span& span, const SpanOptions& options,
+                              SpanWorkspace& workspace) {
   const KnownShape& known = options.start.known;
   SpanSolution solution = workspace.empty_solution(span, known.model->terms());
   SpanEnergy& model = *solution.model;
-  if (model.pieces() != known.model->pieces()) return {};
+  if (model.elements() != known.model->elements()) return {};
   const bool fits = span.planar || span.has_material_directors();
   // The fit also determines the winding of the clamps.
   solution.x =
@@ -68,18 +69,18 @@ SpanSolution next_to_known(const Span& span, const SpanOptions& options, SpanWor
 }  // namespace
 
 SpanSolution ActiveSet::solve(Span span, TangentField near) {
-  return counted(run(std::move(span), std::move(near), {}, Resolution::resolved));
+  return with_evaluations(run(std::move(span), std::move(near), {}, Resolution::resolved));
 }
 
 SpanSolution ActiveSet::solve(SpanSolution equilibrium) {
   Span span = equilibrium.model->span();
-  return counted(run(std::move(span), {}, std::move(equilibrium), Resolution::resolved));
+  return with_evaluations(run(std::move(span), {}, std::move(equilibrium), Resolution::resolved));
 }
 
 SpanSolution ActiveSet::update(SpanSolution equilibrium) {
   Span span = equilibrium.model->span();
   least_terms_ = equilibrium.terms;
-  return counted(run(std::move(span), {}, std::move(equilibrium), Resolution::coarse));
+  return with_evaluations(run(std::move(span), {}, std::move(equilibrium), Resolution::coarse));
 }
 
 /// Runs the rounds of the active-set method. @param solution  first iterate, with its contacts, if
@@ -90,7 +91,7 @@ SpanSolution ActiveSet::run(Span span, TangentField near, SpanSolution solution,
   for (int round = 0; round < most_contact_updates; ++round) {
     const bool found_already = round == 0 && solution.is_equilibrium();
     if (!found_already) solution = newton_from(span, near);
-    if (!solution.is_equilibrium() && hold_points(span)) solution = newton_from(span, near);
+    if (!solution.is_equilibrium() && fix_contact_points(span)) solution = newton_from(span, near);
     if (!solution.is_equilibrium()) break;
     spent_ += free_boundary_newton(solution, options_.deadline, workspace_);
     std::optional<std::vector<Span::Contact>> next =
@@ -127,10 +128,10 @@ SpanSolution ActiveSet::newton_from(const Span& span, const TangentField& near) 
   if (!has_left) newton_solve(solution, newton, workspace_.newton());
   if (!solution.is_equilibrium()) {
     solution.x = start;
-    const bool may_step_over = has_left && !span.soft_obstacles.empty();
+    const bool may_skip_kinks = has_left && !span.soft_obstacles.empty();
     descend_in_trust_region(solution, {.load = load_,
                                        .gradient_tolerance = handover_gradient,
-                                       .radius = may_step_over ? careful_radius : first_radius,
+                                       .radius = may_skip_kinks ? careful_radius : first_radius,
                                        .deadline = &options_.deadline});
     if (succeeded(solution.status)) newton_solve(solution, newton, workspace_.newton());
   }
@@ -139,14 +140,14 @@ SpanSolution ActiveSet::newton_from(const Span& span, const TangentField& near) 
 }
 
 int ActiveSet::terms_of_load(const Span& span) const {
-  constexpr int fewest = 12;  // next to a kink
+  constexpr int least_count = 12;  // next to a kink
   double longest = 0;
-  const std::vector<Piece> pieces = pieces_of(span);
-  for (const Piece& piece : pieces) longest = std::max(longest, piece.length);
-  const int count = std::max(fewest, first_terms(load_, longest));
+  const std::vector<Element> elements = elements_of(span);
+  for (const Element& element : elements) longest = std::max(longest, element.length);
+  const int count = std::max(least_count, first_terms(load_, longest));
   // Many elements are short and need fewer coefficients while contacts change.
-  const int unknowns = count * static_cast<int>(pieces.size()) * (span.planar ? 1 : 2);
-  return unknowns > many_unknowns ? std::max(fewest, count / 2) : count;
+  const int unknowns = count * static_cast<int>(elements.size()) * (span.planar ? 1 : 2);
+  return unknowns > many_unknowns ? std::max(least_count, count / 2) : count;
 }
 
 /// Resolves an equilibrium with all coefficients. If two contact points are about to become a part,
@@ -156,7 +157,7 @@ SpanSolution ActiveSet::resolved(SpanSolution solution, Span& span) {
   const TangentField here = solution.model->field(solution.x);
   span = solution.model->span();
   solution = with_all_terms(std::move(solution));
-  if (solution.is_equilibrium() || !hold_points(span)) return solution;
+  if (solution.is_equilibrium() || !fix_contact_points(span)) return solution;
   solution = newton_from(span, here);
   return solution.is_equilibrium() ? with_all_terms(std::move(solution)) : solution;
 }
@@ -172,7 +173,7 @@ SpanSolution ActiveSet::with_all_terms(SpanSolution solution) {
       solution = finished(std::move(solution));
     }
     const int finer = solution.terms + solution.terms / 2;
-    const bool more = options_.terms == 0 && finer <= max_terms && hardly_behind(solution);
+    const bool more = options_.terms == 0 && finer <= max_terms && is_within_truncation(solution);
     if (!more || options_.deadline.passed()) return solution;
     SpanSolution next = workspace_.with_terms(solution, finer);
     newton_solve(next, {.load = load_, .deadline = &options_.deadline}, workspace_.newton());
@@ -183,12 +184,12 @@ SpanSolution ActiveSet::with_all_terms(SpanSolution solution) {
 }
 
 /// Whether the rod is within an obstacle, by no more than truncation explains.
-bool ActiveSet::hardly_behind(const SpanSolution& solution) const {
+bool ActiveSet::is_within_truncation(const SpanSolution& solution) const {
   if (!solution.is_equilibrium()) return false;
-  const std::vector<GapMinimum> behind =
-      gap_minima(searched_, solution.model->shape(solution.x), -deepest * searched_.length);
+  const std::vector<GapMinimum> behind = gap_minima(searched_, solution.model->shape(solution.x),
+                                                    -contact_tolerance * searched_.length);
   return !behind.empty() && std::all_of(behind.begin(), behind.end(), [&](const auto& lowest) {
-    return lowest.clearance > -deepest_coarse * searched_.length;
+    return lowest.clearance > -coarse_contact_tolerance * searched_.length;
   });
 }
 
@@ -200,17 +201,18 @@ SpanSolution ActiveSet::finished(SpanSolution solution) {
   return solution;
 }
 
-SpanSolution ActiveSet::counted(SpanSolution solution) {
+SpanSolution ActiveSet::with_evaluations(SpanSolution solution) {
   solution.evaluations = std::exchange(spent_, 0);
   return solution;
 }
 
-bool hold_points(Span& span) {
+bool fix_contact_points(Span& span) {
   bool any = false;
   for (Span::Contact& contact : span.contacts) {
     const bool inside = contact.begin > 0 && contact.end < span.length;
     const double middle = (contact.begin + contact.end) / 2;
-    if (contact.lies() && inside && contact.end - contact.begin < shortest_told * span.length) {
+    if (contact.lies() && inside &&
+        contact.end - contact.begin < shortest_contact_part * span.length) {
       contact.begin = contact.end = middle;
     }
     any = any || (contact.slides && !contact.lies());
@@ -242,16 +244,16 @@ SpanSolution follow_contacts(const Span& searched, const SpanOptions& options,
       moved_contacts(span, start.known.model->span().contacts);
   if (!contacts) return {};
   span.contacts = std::move(*contacts);
-  SpanSolution solution = next_to_known(span, options, workspace);
+  SpanSolution solution = solve_near_known(span, options, workspace);
   // At a point that becomes a part the gap has no minimum, and the part is still too short to
   // resolve.
-  if (!solution.is_equilibrium() && hold_points(span)) {
+  if (!solution.is_equilibrium() && fix_contact_points(span)) {
     solution = active_set.newton_from(span, start.field);
   }
   if (!solution.is_equilibrium()) return solution;
   const Eigen::Matrix3Xd turned =
       solution.at_x()->tangents() - start.field(solution.model->nodes()).tangents;
-  if (!(turned.cwiseAbs().maxCoeff() < followed_tangents)) return {};
+  if (!(turned.cwiseAbs().maxCoeff() < largest_followed_change)) return {};
   solution = active_set.solve(std::move(solution));
   solution.followed = succeeded(solution.status) || solution.is_singular_point();
   return solution;

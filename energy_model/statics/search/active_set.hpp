@@ -44,8 +44,8 @@ class ActiveSet {
   [[nodiscard]] SpanSolution resolved(SpanSolution solution, Span& span);
   [[nodiscard]] SpanSolution with_all_terms(SpanSolution solution);
   [[nodiscard]] SpanSolution finished(SpanSolution solution);
-  [[nodiscard]] bool hardly_behind(const SpanSolution& solution) const;
-  [[nodiscard]] SpanSolution counted(SpanSolution solution);
+  [[nodiscard]] bool is_within_truncation(const SpanSolution& solution) const;
+  [[nodiscard]] SpanSolution with_evaluations(SpanSolution solution);
 
   const Span& searched_;
   const SpanOptions& options_;
@@ -58,7 +58,7 @@ class ActiveSet {
 /// Fixes contacts at points: where an obstacle would have to pull, there may be no equilibrium with
 /// a sliding contact but one with a fixed contact. A very short part in contact becomes a point.
 /// @return whether any sliding contact at a point has been fixed
-[[nodiscard]] bool hold_points(Span& span);
+[[nodiscard]] bool fix_contact_points(Span& span);
 
 /// Returns known contacts with the present positions of their obstacles; std::nullopt if an
 /// obstacle has disappeared.

@@ -22,19 +22,20 @@ namespace {
 constexpr double same_hold = 1e-9;
 
 /// Tangent and material d1 of a shape at an arc length, in space.
-struct MaterialAt {
+struct MaterialFrame {
   Eigen::Vector3d tangent, d1;
 };
 
-MaterialAt material_at(const PlacedShape& shape, double length, double arc_length) {
+MaterialFrame material_at(const PlacedShape& shape, double length, double arc_length) {
   const std::vector<double> at = {arc_length};
   const Samples samples = sample({shape}, length, at);
   return {samples.tangents.col(0), samples.d1.col(0)};
 }
 
 /// Rotates the material of a shape so that it has this d1 at an arc length.
-void turn_to(PlacedShape& shape, double length, double arc_length, const Eigen::Vector3d& d1) {
-  const MaterialAt here = material_at(shape, length, arc_length);
+void rotate_material(PlacedShape& shape, double length, double arc_length,
+                     const Eigen::Vector3d& d1) {
+  const MaterialFrame here = material_at(shape, length, arc_length);
   const double sense = shape.reversed ? -1 : 1;
   const double by = sense * std::atan2(here.tangent.dot(here.d1.cross(d1)), here.d1.dot(d1));
   shape.ahead = [by, before = std::move(shape.ahead)](double s) { return by + before(s); };
@@ -75,26 +76,26 @@ void place_twisted_material(const Problem& problem,
     };
   }
   const auto held = static_cast<std::size_t>(first - solutions.begin());
-  turn_to(shapes[held], l, begins[held], first_d1(problem, begins[held]));
+  rotate_material(shapes[held], l, begins[held], first_d1(problem, begins[held]));
   for (std::size_t i = held + 1; i < shapes.size(); ++i) {
-    turn_to(shapes[i], l, begins[i], material_at(shapes[i - 1], l, begins[i]).d1);
+    rotate_material(shapes[i], l, begins[i], material_at(shapes[i - 1], l, begins[i]).d1);
   }
   for (std::size_t i = held; i-- > 0;) {
-    turn_to(shapes[i], l, shapes[i].end, material_at(shapes[i + 1], l, shapes[i].end).d1);
+    rotate_material(shapes[i], l, shapes[i].end, material_at(shapes[i + 1], l, shapes[i].end).d1);
   }
 }
 
 /// Force of a contact's multipliers on a grip at the contact's begin or end.
-struct HeldEnd {
+struct GripContactForce {
   std::size_t contact = 0;
   double s = 0;
   Eigen::Vector3d force = Eigen::Vector3d::Zero();
   Eigen::Vector3d moment = Eigen::Vector3d::Zero();  // about the anchor
 };
 
-std::vector<HeldEnd> held_ends_of(const SpanSolution& solution,
-                                  const std::vector<ContactForce>& forces) {
-  std::vector<HeldEnd> held;
+std::vector<GripContactForce> grip_contact_forces(const SpanSolution& solution,
+                                                  const std::vector<ContactForce>& forces) {
+  std::vector<GripContactForce> held;
   const SpanShape shape = solution.model->shape(solution.x);
   for (std::size_t i = 0; i < forces.size(); ++i) {
     const Span::Contact& contact = solution.model->span().contacts[i];
@@ -120,7 +121,7 @@ std::vector<ContactPart> contacts_of(const PlacedSpan& place, const SpanSolution
   if (span.contacts.empty()) return parts;
   const std::shared_ptr<SpanPoint> at = solution.at_x();
   const SpanShape shape = solution.model->shape(solution.x);
-  const std::vector<HeldEnd> held = held_ends_of(solution, forces);
+  const std::vector<GripContactForce> held = grip_contact_forces(solution, forces);
   for (std::size_t i = 0; i < forces.size(); ++i) {
     const Span::Contact& contact = span.contacts[i];
     const double sense = place.reversed ? -length : length;
@@ -131,7 +132,7 @@ std::vector<ContactPart> contacts_of(const PlacedSpan& place, const SpanSolution
                 : at_tip || contact.begin == 0 ? ContactKind::tip
                                                : ContactKind::touching;
     // A sliding contact point is at the smallest clearance.
-    const std::optional<double> touch = solution.model->touches_at(*at, i);
+    const std::optional<double> touch = solution.model->contact_arc_length(*at, i);
     part.begin = place.start + sense * touch.value_or(contact.begin);
     part.end = place.start + sense * touch.value_or(contact.end);
     part.force = place.frame.transpose() * forces[i].force;
@@ -142,7 +143,7 @@ std::vector<ContactPart> contacts_of(const PlacedSpan& place, const SpanSolution
       const std::vector<double> first = {place.reversed ? contact.end : contact.begin};
       const Eigen::Vector3d arm = shape.sample(first).points.col(0);
       Eigen::Vector3d moment = forces[i].moment - arm.cross(forces[i].force);
-      for (const HeldEnd& end : held) {
+      for (const GripContactForce& end : held) {
         if (end.contact == i) moment -= end.moment;
       }
       part.moment = place.frame.transpose() * moment;
@@ -156,7 +157,7 @@ std::vector<ContactPart> contacts_of(const PlacedSpan& place, const SpanSolution
   return parts;
 }
 
-ContactPart in_newtons(ContactPart part, double force_unit, double length) {
+ContactPart contact_in_newtons(ContactPart part, double force_unit, double length) {
   part.force *= force_unit;
   part.moment *= force_unit * length;
   part.begin_force *= force_unit;
@@ -194,7 +195,7 @@ class Assembly {
   }
 
   void add(const PlacedSpan& place, const SpanSolution& solution) {
-    add_claims(solution);
+    combine_status(solution);
     if (solution.x.size() == 0) return;
     add_energies(place, solution);
     add_reactions(place, solution);
@@ -204,7 +205,7 @@ class Assembly {
                      const std::vector<const SpanSolution*>& solutions) {
     if (succeeded(result_.status) || result_.status == SolveStatus::saddle) {
       result_.message += zero_modes_note(rigid_body_modes_);
-      if (has_couples(problem_)) result_.message += in_the_plane;
+      if (has_couples(problem_)) result_.message += planar_check_note;
     }
     if (result_.status == SolveStatus::near_singular && result_.neutral_directions > 0) {
       result_.message += ": " + std::to_string(result_.neutral_directions) + " neutral direction" +
@@ -219,7 +220,7 @@ class Assembly {
 
  private:
   /// Combines the claims of the spans: the weakest claim holds for the whole rod.
-  void add_claims(const SpanSolution& solution) {
+  void combine_status(const SpanSolution& solution) {
     result_.evaluations += solution.evaluations;
     result_.terms = std::max(result_.terms, solution.terms);
     // -1 (unknown) is kept.
@@ -278,7 +279,7 @@ class Assembly {
     for (const ContactPart& contact : contacts_of(place, solution, pushes, l_)) {
       carried += place.frame * contact.force;
       result_.obstacles[contact.obstacle] += force_unit_ * contact.force;
-      result_.contacts.push_back(in_newtons(contact, force_unit_, l_));
+      result_.contacts.push_back(contact_in_newtons(contact, force_unit_, l_));
     }
     const Eigen::Index axes = model.span().planar ? 2 : 3;
     const auto to_space = [&](const Eigen::Vector3d& torque) {
@@ -295,15 +296,15 @@ class Assembly {
       own.force += to_newtons(place, force);
       own.torque += to_space(model.hold_torque(*at, hold, solution.multipliers));
     }
-    for (const HeldEnd& end : held_ends_of(solution, pushes)) {
-      carried += give_to_hold(place, end.s, end.force);
+    for (const GripContactForce& end : grip_contact_forces(solution, pushes)) {
+      carried += add_force_to_grip(place, end.s, end.force);
     }
     anchor.force -= to_newtons(place, carried);
   }
 
   /// Adds a force to the grip at s. @return the force; zero if only the anchor is there
-  [[nodiscard]] Eigen::Vector3d give_to_hold(const PlacedSpan& place, double s,
-                                             const Eigen::Vector3d& force) {
+  [[nodiscard]] Eigen::Vector3d add_force_to_grip(const PlacedSpan& place, double s,
+                                                  const Eigen::Vector3d& force) {
     for (std::size_t j = 0; j < place.hold_grips.size(); ++j) {
       if (std::abs(place.span.holds[j].at - s) > closest_cuts) continue;
       result_.grips[place.hold_grips[j]].force += to_newtons(place, force);

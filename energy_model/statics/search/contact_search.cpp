@@ -26,13 +26,13 @@ constexpr std::size_t most_starts = 3;
 /// Maximum number of descents from an unstable shape.
 constexpr int most_departures = 4;
 /// Largest component of a polygon's tangents out of the plane that counts as planar.
-constexpr double flat = 1e-6;
+constexpr double planar_tangent_tolerance = 1e-6;
 /// Energy above the lowest, divided by 1 + energy, up to which a polygon with few segments is
 /// refined first: its energy has about this error, since segments cut the corners of bodies.
-constexpr double near_lowest = 0.5;
+constexpr double first_refined_energy = 0.5;
 /// Energy difference, divided by 1 + energy, below which two polygons with all segments count as
 /// tied: with contact their energies have errors of up to 0.03, and the rod's own energies decide.
-constexpr double near_tie_of_polygons = 0.06;
+constexpr double polygon_tie_energy = 0.06;
 /// Energy difference of equal polygons, divided by 1 + energy.
 constexpr double same_energy_of_polygons = 1e-6;
 
@@ -63,7 +63,7 @@ class ContactSearch {
     }
     if (options_.only_follows()) return;
     if (found_.empty()) {
-      if (starts) look_from({start.field});
+      if (starts) search_from({start.field});
       const bool suffices = !found_.empty() && succeeded(found_.best().status);
       if (!suffices && !options_.only_descends()) search();
     }
@@ -77,23 +77,23 @@ class ContactSearch {
   /// Searches from shapes that pass obstacles. Each is relaxed as a coarse polygon. It is dropped
   /// if a known equilibrium relaxes to the same polygon or, unless all equilibria are wanted, if
   /// the polygon's energy exceeds that of the lowest known equilibrium's polygon by more than the
-  /// errors of polygons (near_lowest, near_tie_of_polygons).
-  void look_past() {
+  /// errors of polygons (first_refined_energy, polygon_tie_energy).
+  void search_past() {
     const std::vector<Span> starts = pinned_past_obstacles(span_);
     if (starts.empty()) return;
     std::vector<PenaltyPolygon> known;
-    for (const SpanSolution& solution : found_.in_order()) {
+    for (const SpanSolution& solution : found_.by_discovery()) {
       if (!succeeded(solution.status)) continue;
       known.push_back(coarse_polygon(solution.model->field(solution.x)));
     }
     const std::size_t before = known.size();
     for (const Span& start : starts) {
       if (options_.deadline.passed()) {
-        note_omitted(options_.log, "starts after the time limit");
+        log_omitted(options_.log, "starts after the time limit");
         break;
       }
-      note_tried(options_.log, past_obstacles);
-      if (options_.passing_starts != nullptr) ++*options_.passing_starts;
+      log_tried(options_.log, past_obstacles);
+      if (options_.other_side_starts != nullptr) ++*options_.other_side_starts;
       PenaltyPolygon polygon = coarse_polygon(arch_field(start));
       const bool is_new = std::none_of(known.begin(), known.end(), [&](const auto& other) {
         return polygon.points.cols() == other.points.cols() &&
@@ -108,22 +108,22 @@ class ContactSearch {
     };
     std::optional<PenaltyPolygon> lowest;
     for (std::size_t i = before; i < known.size() && !options_.deadline.passed(); ++i) {
-      if (before > 0 && !wanted(known[i].energy, known.front(), near_lowest)) continue;
-      const PenaltyPolygon fine = rest_refined(span_, known[i], options_.deadline, Descent::near);
-      found_.spend(fine.evaluations);
+      if (before > 0 && !wanted(known[i].energy, known.front(), first_refined_energy)) continue;
+      const PenaltyPolygon fine = relax_refined(span_, known[i], options_.deadline, Descent::near);
+      found_.add_evaluations(fine.evaluations);
       if (before > 0 && !options_.wants_all()) {
-        if (!lowest) lowest = rest_refined(span_, known.front(), options_.deadline, Descent::near);
-        if (!wanted(fine.energy, *lowest, near_tie_of_polygons)) continue;
+        if (!lowest) lowest = relax_refined(span_, known.front(), options_.deadline, Descent::near);
+        if (!wanted(fine.energy, *lowest, polygon_tie_energy)) continue;
       }
-      if (found_.add(from_polygon(fine))) note_found(options_.log, past_obstacles);
+      if (found_.add(from_polygon(fine))) log_found(options_.log, past_obstacles);
     }
   }
 
  private:
   [[nodiscard]] PenaltyPolygon coarse_polygon(const TangentField& start) {
     PenaltyPolygon polygon =
-        rest_on_obstacles(span_, start, Segments::few, options_.deadline, Descent::near);
-    found_.spend(polygon.evaluations);
+        relax_on_obstacles(span_, start, Segments::few, options_.deadline, Descent::near);
+    found_.add_evaluations(polygon.evaluations);
     return polygon;
   }
 
@@ -140,13 +140,13 @@ class ContactSearch {
     std::vector<SpanSolution> clear = solve_span(span_, without_start, workspace_);
     if (!options_.wants_all()) clear.resize(1);
     for (SpanSolution& solution : clear) {
-      found_.spend(std::exchange(solution.evaluations, 0));
+      found_.add_evaluations(std::exchange(solution.evaluations, 0));
       if (!solution.is_equilibrium()) {
         failure = std::move(solution);
         continue;
       }
       const SpanShape shape = solution.model->shape(solution.x);
-      if (!gap_minima(span_, shape, -deepest * span_.length).empty()) {
+      if (!gap_minima(span_, shape, -contact_tolerance * span_.length).empty()) {
         starts.push_back(solution.model->field(solution.x));
         lowest_within = std::min(lowest_within, solution.energy);
         continue;
@@ -160,7 +160,7 @@ class ContactSearch {
     // but possibly a lower one than shapes clear of obstacles elsewhere.
     if (found_.suffices() && found_.best().energy <= lowest_within) return;
     for (TangentField& start : start_fields(span_)) starts.push_back(std::move(start));
-    look_from(starts);
+    search_from(starts);
     if (found_.empty() && failure) (void)found_.add(std::move(*failure));
   }
 
@@ -168,13 +168,13 @@ class ContactSearch {
   /// first. With several starts coarse polygons are relaxed first: those near the lowest energy are
   /// refined, then the others if these yield no result, and at last polygons with all segments from
   /// the starts.
-  void look_from(const std::vector<TangentField>& starts) {
+  void search_from(const std::vector<TangentField>& starts) {
     const auto whole = [&](Segments segments) {
       const std::size_t count =
           options_.wants_all() ? starts.size() : std::min(most_starts, starts.size());
       return polygons_from(count, [&, segments](std::size_t i) {
         const Descent descent = options_.only_descends() ? Descent::near : Descent::far;
-        return rest_on_obstacles(span_, starts[i], segments, options_.deadline, descent);
+        return relax_on_obstacles(span_, starts[i], segments, options_.deadline, descent);
       });
     };
     if (starts.size() > 1) {
@@ -184,13 +184,14 @@ class ContactSearch {
       for (const PenaltyPolygon& polygon : coarse) {
         if (!polygon.at_rest) continue;
         const double lowest = coarse.front().energy;
-        const bool is_near = polygon.energy - lowest <= near_lowest * (1 + std::abs(lowest));
+        const bool is_near =
+            polygon.energy - lowest <= first_refined_energy * (1 + std::abs(lowest));
         (is_near ? near : other).push_back(polygon);
       }
       for (const std::vector<PenaltyPolygon>* from : {&near, &other}) {
         if (options_.deadline.passed() && !found_.empty()) return;
         refine(polygons_from(from->size(), [&](std::size_t i) {
-          return rest_refined(span_, (*from)[i], options_.deadline);
+          return relax_refined(span_, (*from)[i], options_.deadline);
         }));
         if (found_.suffices()) return;
       }
@@ -205,13 +206,13 @@ class ContactSearch {
     for (std::size_t i = 0; i < polygons.size(); ++i) {
       const PenaltyPolygon& polygon = polygons[i];
       if (options_.deadline.passed() && !found_.empty()) {
-        note_omitted(options_.log, "starts after the time limit");
+        log_omitted(options_.log, "starts after the time limit");
         return;
       }
-      if (found_.add(from_polygon(polygon))) note_found(options_.log, polygons_at_rest);
+      if (found_.add(from_polygon(polygon))) log_found(options_.log, polygons_at_rest);
       const bool tie =
           i + 1 < polygons.size() && polygons[i + 1].energy - polygon.energy <=
-                                         near_tie_of_polygons * (1 + std::abs(polygon.energy));
+                                         polygon_tie_energy * (1 + std::abs(polygon.energy));
       if (found_.suffices() && !tie) return;
     }
   }
@@ -223,12 +224,12 @@ class ContactSearch {
     std::vector<PenaltyPolygon> polygons;
     for (std::size_t i = 0; i < count; ++i) {
       if (options_.deadline.passed() && !polygons.empty()) {
-        note_omitted(options_.log, "starts after the time limit");
+        log_omitted(options_.log, "starts after the time limit");
         break;
       }
-      note_tried(options_.log, polygons_at_rest);
+      log_tried(options_.log, polygons_at_rest);
       PenaltyPolygon polygon = rest(i);
-      found_.spend(polygon.evaluations);
+      found_.add_evaluations(polygon.evaluations);
       const bool known = std::any_of(polygons.begin(), polygons.end(), [&](const auto& other) {
         return other.at_rest && polygon.at_rest &&
                std::abs(other.energy - polygon.energy) <
@@ -248,15 +249,15 @@ class ContactSearch {
   void leave_saddle() {
     constexpr double push = 0.5;
     const SpanSolution& saddle = found_.best();
-    const std::optional<NegativeCurvature> way = negative_curvature(saddle);
-    if (!way || options_.deadline.passed()) return;
-    SpanEnergy pushed(way->span, saddle.terms);
-    const Eigen::VectorXd x = pushed.prolong(*saddle.model, saddle.x) + push * way->direction;
+    const std::optional<NegativeCurvature> descent = negative_curvature(saddle);
+    if (!descent || options_.deadline.passed()) return;
+    SpanEnergy pushed(descent->span, saddle.terms);
+    const Eigen::VectorXd x = pushed.prolong(*saddle.model, saddle.x) + push * descent->direction;
     Span span = span_;
-    span.planar = way->span.planar;
+    span.planar = descent->span.planar;
     SpanOptions options = options_;
     options.start.approach = Approach::descend;
-    ContactSearch(span, options, workspace_, found_).look_from({pushed.field(x)});
+    ContactSearch(span, options, workspace_, found_).search_from({pushed.field(x)});
   }
 
   /// Solves for the rod's equilibrium with a polygon's contacts, which are updated until they
@@ -264,7 +265,8 @@ class ContactSearch {
   [[nodiscard]] SpanSolution from_polygon(const PenaltyPolygon& polygon) {
     Span span = span_;
     span.contacts = polygon.contacts;
-    if (polygon.tangents.row(2).cwiseAbs().maxCoeff() > flat) span.planar = false;
+    if (polygon.tangents.row(2).cwiseAbs().maxCoeff() > planar_tangent_tolerance)
+      span.planar = false;
     SpanOptions options = options_;
     // Newton's method may step over soft obstacles, at which no constraint keeps the rod.
     if (!span_.soft_obstacles.empty()) options.start.approach = Approach::descend;
@@ -286,9 +288,9 @@ std::vector<SpanSolution> solve_touching_span(const Span& span, const SpanOption
   return std::move(found).take();
 }
 
-void look_past_obstacles(const Span& span, const SpanOptions& options, SpanWorkspace& workspace,
-                         Found& found) {
-  ContactSearch(span, options, workspace, found).look_past();
+void search_past_obstacles(const Span& span, const SpanOptions& options, SpanWorkspace& workspace,
+                           Found& found) {
+  ContactSearch(span, options, workspace, found).search_past();
 }
 
 }  // namespace dlo::energy_model

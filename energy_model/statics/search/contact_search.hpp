@@ -18,7 +18,7 @@ namespace dlo::energy_model {
 /// Adds equilibria found from shapes that pass the span's obstacles on either side
 /// (pinned_past_obstacles()): all of them if all are wanted, otherwise those that may be lower than
 /// the lowest one found. Soft obstacles are included.
-void look_past_obstacles(const Span& span, const SpanOptions& options, SpanWorkspace& workspace,
-                         Found& found);
+void search_past_obstacles(const Span& span, const SpanOptions& options, SpanWorkspace& workspace,
+                           Found& found);
 
 }  // namespace dlo::energy_model

@@ -86,7 +86,7 @@ std::vector<double> stable_energies(const Problem& problem, const Equilibrium& l
     };
     std::vector<double> with_span;
     for (const SpanSolution& found : of_span) {
-      if (!succeeded(found.status) || found.turns_lost != 0) continue;
+      if (!succeeded(found.status) || found.missing_turns != 0) continue;
       const double above = &found == &of_span.front() ? 0 : energy(found) - energy(of_span.front());
       for (const double sum : sums) with_span.push_back(sum + above);
     }
@@ -102,7 +102,7 @@ std::vector<double> stable_energies(const Problem& problem, const Equilibrium& l
 /// @param solutions  solutions of each span
 /// @param result     the lowest equilibrium, or all combinations of `solutions`
 void note_search(const Problem& problem, const std::vector<std::vector<SpanSolution>>& solutions,
-                 int passing_starts, std::vector<Equilibrium>& result) {
+                 int other_side_starts, std::vector<Equilibrium>& result) {
   std::vector<double> energies;
   if (result.size() == 1 && succeeded(result.front().status)) {
     energies = stable_energies(problem, result.front(), solutions);
@@ -113,7 +113,7 @@ void note_search(const Problem& problem, const std::vector<std::vector<SpanSolut
   }
   for (Equilibrium& found : result) {
     found.stable_energies = energies;
-    found.passing_starts = passing_starts;
+    found.other_side_starts = other_side_starts;
   }
 }
 
@@ -123,22 +123,22 @@ class EnergySolver::State {
  public:
   explicit State(const EnergyOptions& options) : options_(options) { check(options); }
 
-  enum class Wanted { lowest, all };
+  enum class Request { lowest, all };
   /// How the previous solution is used: not at all, as the initial guess, or as the only initial
   /// guess. `points`: the initial guess is a given shape, from which the solver only descends.
   enum class From { nothing, last_shape, last_shape_only, points };
 
   /// Solves a problem. @return equilibria; empty if From::last_shape_only does not lead to one
-  std::vector<Equilibrium> solve(const Problem& problem, Wanted wanted, From from) {
+  std::vector<Equilibrium> solve(const Problem& problem, Request wanted, From from) {
     const auto begin = std::chrono::steady_clock::now();
     const Deadline deadline(options_.time_limit);
     log_ = {};
     require_dead_loads(problem, "solve_energy");
     require_inextensible(problem, "solve_energy");
-    if (std::optional<Equilibrium> known = line_without_search(problem)) {
+    if (std::optional<Equilibrium> known = shape_without_search(problem)) {
       followed_ = false;
       if (from == From::last_shape_only) return {};
-      former_ = std::exchange(remembered_, {});
+      previous_ = std::exchange(remembered_, {});
       return {std::move(*known)};
     }
     std::vector<PlacedSpan> placed = split(problem);
@@ -146,7 +146,7 @@ class EnergySolver::State {
       remove_redundant_obstacles(span.span);
       require_affordable(span.span, options_.terms, "solve_energy");
     }
-    former_ = remembered_;
+    previous_ = remembered_;
     std::vector<Equilibrium> result =
         solve_without_similar_obstacles(problem, placed, wanted, from, deadline);
     if (result.empty()) result = solve_placed(problem, placed, wanted, from, deadline);
@@ -159,13 +159,13 @@ class EnergySolver::State {
     return result;
   }
 
-  void undo() { remembered_ = former_; }
+  void undo() { remembered_ = previous_; }
 
   /// Descends from a shape, without a further search.
   Equilibrium near(const Problem& problem, const Equilibrium& shape) {
     const Equilibrium* const given = std::exchange(options_.start, &shape);
     remembered_ = {};
-    Equilibrium result = std::move(solve(problem, Wanted::lowest, From::points).front());
+    Equilibrium result = std::move(solve(problem, Request::lowest, From::points).front());
     options_.start = given;
     return result;
   }
@@ -188,7 +188,7 @@ class EnergySolver::State {
   /// @return empty if no obstacle was omitted, or if the result is not certified with all obstacles
   std::vector<Equilibrium> solve_without_similar_obstacles(const Problem& problem,
                                                            const std::vector<PlacedSpan>& placed,
-                                                           Wanted wanted, From from,
+                                                           Request wanted, From from,
                                                            const Deadline& deadline) {
     constexpr int most_exchanges = 4;
     std::size_t preferred = 0;
@@ -211,13 +211,13 @@ class EnergySolver::State {
       if (entered == preferred && exchange > 0) break;
       preferred = entered;
     }
-    return undone();
+    return undo_and_return_none();
   }
 
   /// Solves the spans and assembles them. @return equilibria; empty if From::last_shape_only does
   /// not lead to one
   std::vector<Equilibrium> solve_placed(const Problem& problem, std::vector<PlacedSpan>& placed,
-                                        Wanted wanted, From from, const Deadline& deadline) {
+                                        Request wanted, From from, const Deadline& deadline) {
     const bool warm = from != From::nothing && remembered_.size() == placed.size();
     const bool only = from == From::last_shape_only;
     followed_ = warm;
@@ -226,7 +226,7 @@ class EnergySolver::State {
     remembered_.resize(placed.size());
     std::vector<std::vector<SpanSolution>> solutions;
     solutions.reserve(placed.size());
-    int passing_starts = 0;
+    int other_side_starts = 0;
     for (std::size_t i = 0; i < placed.size(); ++i) {
       SpanOptions options;
       options.terms = options_.terms;
@@ -235,23 +235,23 @@ class EnergySolver::State {
       options.deadline = deadline;
       if (only) options.start.approach = Approach::follow_only;
       if (from == From::points) options.start.approach = Approach::descend_only;
-      if (wanted == Wanted::all) options.log = &log_;
-      options.passing_starts = &passing_starts;
+      if (wanted == Request::all) options.log = &log_;
+      options.other_side_starts = &other_side_starts;
       solutions.push_back(solve_span_at(i, placed[i], problem, options, warm));
       followed_ = followed_ && solutions.back().front().followed;
-      if (only && !followed_) return undone();
+      if (only && !followed_) return undo_and_return_none();
     }
     std::vector<Equilibrium> result =
-        combine(problem, placed, solutions, wanted == Wanted::all ? SIZE_MAX : 1, log_);
+        combine(problem, placed, solutions, wanted == Request::all ? SIZE_MAX : 1, log_);
     if (from == From::nothing && options_.start == nullptr) {
-      note_search(problem, solutions, passing_starts, result);
+      note_search(problem, solutions, other_side_starts, result);
     }
     followed_ = followed_ && (!only || succeeded(result.front().status));
-    if (only && !followed_) return undone();
+    if (only && !followed_) return undo_and_return_none();
     return result;
   }
 
-  [[nodiscard]] std::vector<Equilibrium> undone() {
+  [[nodiscard]] std::vector<Equilibrium> undo_and_return_none() {
     undo();
     return {};
   }
@@ -265,14 +265,14 @@ class EnergySolver::State {
     if (placed.frames) {
       std::vector<SpanSolution> found =
           solve_twisted(placed, problem, options, options_.start, memory, workspace_);
-      memory.twisted.remember(found.front(), placed);
+      memory.twisted.store(found.front(), placed);
       if (memory.twisted.is_known()) memory.twist = found.front().model->twist(found.front().x);
       return found;
     }
     const Equilibrium* start = memory.untwisted.is_known() ? nullptr : options_.start;
     std::vector<SpanSolution> found =
         solve_untwisted(placed, problem, options, start, memory.untwisted, workspace_);
-    memory.untwisted.remember(found.front(), placed);
+    memory.untwisted.store(found.front(), placed);
     return found;
   }
 
@@ -280,7 +280,7 @@ class EnergySolver::State {
   SearchLog log_;
   bool followed_ = false;
   SpanWorkspace workspace_;
-  std::vector<Remembered> remembered_, former_;  // after the last call and before it
+  std::vector<Remembered> remembered_, previous_;  // after the last call and before it
 };
 
 EnergySolver::EnergySolver(const EnergyOptions& options)
@@ -290,16 +290,16 @@ EnergySolver::EnergySolver(EnergySolver&& other) noexcept = default;
 EnergySolver& EnergySolver::operator=(EnergySolver&& other) noexcept = default;
 
 Equilibrium EnergySolver::solve(const Problem& problem) {
-  return std::move(state_->solve(problem, State::Wanted::lowest, State::From::nothing).front());
+  return std::move(state_->solve(problem, State::Request::lowest, State::From::nothing).front());
 }
 
 Equilibrium EnergySolver::follow(const Problem& problem) {
-  return std::move(state_->solve(problem, State::Wanted::lowest, State::From::last_shape).front());
+  return std::move(state_->solve(problem, State::Request::lowest, State::From::last_shape).front());
 }
 
 std::optional<Equilibrium> EnergySolver::try_follow(const Problem& problem) {
   std::vector<Equilibrium> kept =
-      state_->solve(problem, State::Wanted::lowest, State::From::last_shape_only);
+      state_->solve(problem, State::Request::lowest, State::From::last_shape_only);
   if (kept.empty()) return std::nullopt;
   return std::move(kept.front());
 }
@@ -315,7 +315,7 @@ Equilibrium EnergySolver::near(const Problem& problem, const std::vector<double>
 
 EnergySearch EnergySolver::search(const Problem& problem) {
   EnergySearch result;
-  result.equilibria = state_->solve(problem, State::Wanted::all, State::From::nothing);
+  result.equilibria = state_->solve(problem, State::Request::all, State::From::nothing);
   result.strategies = state_->log().strategies();
   result.omitted = state_->log().omitted();
   return result;

@@ -18,9 +18,9 @@ bool is_free(const Span& span, double at) {
 
 constexpr int most_boundary_steps = 25;
 /// Number of Broyden updates between two evaluations of the derivatives.
-constexpr int updates_a_derivative = 8;
+constexpr int updates_per_derivative = 8;
 /// Maximum number of times that a step without an equilibrium is divided by 4.
-constexpr int most_cuts = 3;
+constexpr int most_step_divisions = 3;
 /// Step of the ends, divided by the rod length, below which they have converged.
 constexpr double converged_step = 1e-10;
 /// Largest residual (in the measures of free_boundary.hpp, which are at least the step) that counts
@@ -34,7 +34,7 @@ constexpr double small_residual = 1e-10;
 constexpr double longest_step = 0.02;
 constexpr double largest_room_share = 0.45;
 /// Step of the finite differences, divided by the free distance.
-constexpr double difference = 1e-6;
+constexpr double finite_difference_step = 1e-6;
 
 class FreeBoundaryNewton {
  public:
@@ -55,10 +55,11 @@ class FreeBoundaryNewton {
       if (size < zero_residual) break;
       if (size < small_residual && size > before / 2) break;
       before = size;
-      if (step % updates_a_derivative == 0 && !differentiate()) break;
-      Eigen::VectorXd way = bounded(-jacobian_.partialPivLu().solve(residual_));
-      if (!way.allFinite() || !move(way)) break;
-      if (way.cwiseAbs().maxCoeff() < converged_step * solution_.model->span().length) break;
+      if (step % updates_per_derivative == 0 && !differentiate()) break;
+      Eigen::VectorXd displacement = limit_step(-jacobian_.partialPivLu().solve(residual_));
+      if (!displacement.allFinite() || !move(displacement)) break;
+      if (displacement.cwiseAbs().maxCoeff() < converged_step * solution_.model->span().length)
+        break;
     }
     return spent_;
   }
@@ -68,30 +69,31 @@ class FreeBoundaryNewton {
     return free_boundary_residual(solution, ends_);
   }
 
-  [[nodiscard]] Eigen::VectorXd bounded(Eigen::VectorXd way) const {
+  [[nodiscard]] Eigen::VectorXd limit_step(Eigen::VectorXd displacement) const {
     const Span& span = solution_.model->span();
     double share = 1;
     for (std::size_t i = 0; i < ends_.size(); ++i) {
-      const double size = std::abs(way[static_cast<Eigen::Index>(i)]);
-      const MoveLimits room = move_limits(span, ends_[i]);
-      const bool down = way[static_cast<Eigen::Index>(i)] < 0;
-      const double most =
-          std::min(largest_room_share * (down ? room.down : room.up), longest_step * span.length);
+      const double size = std::abs(displacement[static_cast<Eigen::Index>(i)]);
+      const MoveLimits limits = move_limits(span, ends_[i]);
+      const bool down = displacement[static_cast<Eigen::Index>(i)] < 0;
+      const double most = std::min(largest_room_share * (down ? limits.down : limits.up),
+                                   longest_step * span.length);
       if (size > most) share = std::min(share, most / size);
     }
-    way *= share;
-    return way;
+    displacement *= share;
+    return displacement;
   }
 
   /// Solves for the equilibrium with moved ends.
-  [[nodiscard]] SpanSolution with_moved(const Eigen::VectorXd& way, NewtonMethod method) {
+  [[nodiscard]] SpanSolution solve_with_moved_ends(const Eigen::VectorXd& displacement,
+                                                   NewtonMethod method) {
     Span span = solution_.model->span();
     for (std::size_t i = 0; i < ends_.size(); ++i) {
-      ends_[i].move(span, way[static_cast<Eigen::Index>(i)]);
+      ends_[i].move(span, displacement[static_cast<Eigen::Index>(i)]);
     }
     SpanSolution result = workspace_.empty_solution(span, solution_.terms);
     NewtonOptions options = {.load = span.total_load(), .deadline = &deadline_};
-    if (result.model->pieces() == solution_.model->pieces()) {
+    if (result.model->elements() == solution_.model->elements()) {
       result.x = result.model->prolong(*solution_.model, solution_.x);
       result.multipliers = solution_.multipliers;
       options.method = method;
@@ -109,29 +111,29 @@ class FreeBoundaryNewton {
   /// Moves the free ends of contact and solves for the equilibrium there.
   /// @param[in,out] way  displacements of the ends; shortened if it leads to no equilibrium
   /// @return whether an equilibrium was found
-  [[nodiscard]] bool move(Eigen::VectorXd& way) {
-    const Eigen::VectorXd whole = way;
+  [[nodiscard]] bool move(Eigen::VectorXd& displacement) {
+    const Eigen::VectorXd whole = displacement;
     SpanSolution trial;
     for (const NewtonMethod method : {NewtonMethod::simplified, NewtonMethod::newton}) {
-      way = whole;
-      trial = with_moved(way, method);
-      for (int cut = 0; cut < most_cuts && !trial.is_equilibrium(); ++cut) {
-        way /= 4;
-        trial = with_moved(way, method);
+      displacement = whole;
+      trial = solve_with_moved_ends(displacement, method);
+      for (int cut = 0; cut < most_step_divisions && !trial.is_equilibrium(); ++cut) {
+        displacement /= 4;
+        trial = solve_with_moved_ends(displacement, method);
       }
       if (trial.is_equilibrium()) break;
     }
     if (!trial.is_equilibrium()) return false;
     const Eigen::VectorXd residual = residual_of(trial);
-    const Eigen::RowVectorXd along = way.transpose() / way.squaredNorm();
-    jacobian_ += (residual - residual_ - jacobian_ * way) * along;
+    const Eigen::RowVectorXd along = displacement.transpose() / displacement.squaredNorm();
+    jacobian_ += (residual - residual_ - jacobian_ * displacement) * along;
     residual_ = residual;
     solution_ = std::move(trial);
     return true;
   }
 
   [[nodiscard]] bool differentiate() {
-    Eigen::VectorXd way = Eigen::VectorXd::Zero(residual_.size());
+    Eigen::VectorXd displacement = Eigen::VectorXd::Zero(residual_.size());
     for (Eigen::Index i = 0; i < residual_.size(); ++i) {
       const FreeBoundary& end = ends_[static_cast<std::size_t>(i)];
       const Span::Contact& contact = solution_.model->span().contacts[end.contact];
@@ -140,13 +142,15 @@ class FreeBoundaryNewton {
         jacobian_.col(i) = Eigen::VectorXd::Unit(residual_.size(), i);
         continue;
       }
-      const MoveLimits room = move_limits(solution_.model->span(), end);
-      way[i] = difference * (room.down > room.up ? -room.down : room.up);
-      SpanSolution beside = with_moved(way, NewtonMethod::simplified);
-      if (!beside.is_equilibrium()) beside = with_moved(way, NewtonMethod::newton);
-      if (!beside.is_equilibrium()) return false;
-      jacobian_.col(i) = (residual_of(beside) - residual_) / way[i];
-      way[i] = 0;
+      const MoveLimits limits = move_limits(solution_.model->span(), end);
+      displacement[i] =
+          finite_difference_step * (limits.down > limits.up ? -limits.down : limits.up);
+      SpanSolution perturbed = solve_with_moved_ends(displacement, NewtonMethod::simplified);
+      if (!perturbed.is_equilibrium())
+        perturbed = solve_with_moved_ends(displacement, NewtonMethod::newton);
+      if (!perturbed.is_equilibrium()) return false;
+      jacobian_.col(i) = (residual_of(perturbed) - residual_) / displacement[i];
+      displacement[i] = 0;
     }
     return true;
   }
@@ -169,11 +173,11 @@ double FreeBoundary::at(const Span& span) const {
   return begins ? own.begin : own.end;
 }
 
-void FreeBoundary::move(Span& span, double way) const {
+void FreeBoundary::move(Span& span, double displacement) const {
   Span::Contact& own = span.contacts[contact];
   const bool lies = own.lies();
-  if (begins || !lies) own.begin += way;
-  if (!begins || !lies) own.end += way;
+  if (begins || !lies) own.begin += displacement;
+  if (!begins || !lies) own.end += displacement;
   if (!lies) own.end = own.begin;
 }
 
@@ -191,24 +195,24 @@ MoveLimits move_limits(const Span& span, const FreeBoundary& end) {
   const double at = end.at(span);
   const Span::Contact& own = span.contacts[end.contact];
   MoveLimits limits{at, span.length - at};
-  const auto beside = [&](double other) {
+  const auto avoid = [&](double other) {
     if (other < at) limits.down = std::min(limits.down, at - other);
     if (other > at) limits.up = std::min(limits.up, other - at);
   };
-  beside(span.anchor);
-  for (const Span::Hold& hold : span.holds) beside(hold.at);
+  avoid(span.anchor);
+  for (const Span::Hold& hold : span.holds) avoid(hold.at);
   for (const Span::Contact& contact : span.contacts) {
     if (&contact == &own) continue;
-    beside(contact.begin);
-    beside(contact.end);
+    avoid(contact.begin);
+    avoid(contact.end);
   }
-  if (own.lies()) beside(end.begins ? own.end : own.begin);
+  if (own.lies()) avoid(end.begins ? own.end : own.begin);
   return limits;
 }
 
 Eigen::VectorXd free_boundary_residual(const SpanSolution& solution,
                                        const std::vector<FreeBoundary>& ends) {
-  constexpr double aside = 1e-12;
+  constexpr double offset = 1e-12;
   const Span& span = solution.model->span();
   const std::shared_ptr<SpanPoint> point = solution.at_x();
   std::vector<double> s;
@@ -216,7 +220,7 @@ Eigen::VectorXd free_boundary_residual(const SpanSolution& solution,
     // Evaluate in the free one of the two elements that meet there.
     const double at = end.at(span);
     const bool after = span.contacts[end.contact].lies() && !end.begins;
-    s.push_back(after ? at + aside : at - aside);
+    s.push_back(after ? at + offset : at - offset);
   }
   const SpanSamples samples = solution.model->shape(solution.x).sample(s);
   Eigen::VectorXd result(static_cast<Eigen::Index>(ends.size()));
@@ -227,7 +231,7 @@ Eigen::VectorXd free_boundary_residual(const SpanSolution& solution,
     const MoveLimits limits = move_limits(span, ends[i]);
     if (contact.lies()) {
       result[column] = here.rate * (ends[i].begins ? limits.down : limits.up);
-    } else if (const auto at = solution.model->touches_at(*point, ends[i].contact)) {
+    } else if (const auto at = solution.model->contact_arc_length(*point, ends[i].contact)) {
       result[column] = contact.begin - *at;
     } else {
       result[column] = here.slope * std::min(limits.down, limits.up);

@@ -112,8 +112,8 @@ std::vector<PlacedSolution> spans_in_space(const Problem& problem, const Equilib
     const TwistedPart* twisted = known_twist(known, placed, problem.length);
     if (placed.frames && twisted != nullptr) {
       SpanSolution solution =
-          twist_from(field, {held_end_d1(*placed.frames, placed.span), twisted->angle}, placed.span,
-                     placed.frames->stiffness, options, workspace);
+          twist_from(field, {prescribed_end_d1(*placed.frames, placed.span), twisted->angle},
+                     placed.span, placed.frames->stiffness, options, workspace);
       result.push_back({std::move(placed), std::move(solution)});
       continue;
     }

@@ -28,7 +28,7 @@ constexpr std::size_t most_fields = 12;
 /// Maximum number of intervals of a polygon that is relaxed again.
 constexpr double most_field_intervals = 600;
 
-Eigen::VectorXd middles_of(const RodMesh& mesh) {
+Eigen::VectorXd midpoints(const RodMesh& mesh) {
   const Eigen::Index count = mesh.intervals();
   return (mesh.s.head(count) + mesh.s.tail(count)) / 2;
 }
@@ -58,7 +58,7 @@ bool is_out_of_plane(const Span& span, const TangentField& shape, double largest
 }
 
 /// Whether there is an obstacle that the rod may pass on another side.
-bool has_bodies(const Span& span) {
+bool has_passable_obstacle(const Span& span) {
   const auto is_body = [](const Span::Obstacle& obstacle) {
     return !obstacle.body.is_half_space();
   };
@@ -101,7 +101,7 @@ class PolygonFields {
   [[nodiscard]] TangentField field(std::size_t index) const {
     const RelaxedPolygon& minimum = minima_[index];
     const RodMesh mesh = make_mesh(*span_, longest_);
-    Eigen::VectorXd middles = middles_of(mesh);
+    Eigen::VectorXd middles = midpoints(mesh);
     Eigen::Matrix3Xd tangents = minimum.tangents();
     const double force =
         minimum.force.colwise().norm().maxCoeff() / least_bending_stiffness(*span_);
@@ -109,8 +109,8 @@ class PolygonFields {
         std::max(1 / std::sqrt(std::max(force, 1.0)), span_->length / most_field_intervals);
     if (longest_ > 1.1 * resolving) {
       const RodMesh finer = make_mesh(*span_, resolving);
-      middles = middles_of(finer);
-      tangents = relax_on(*span_, finer, mesh, minimum, deadline_).tangents();
+      middles = midpoints(finer);
+      tangents = relax_on_mesh(*span_, finer, mesh, minimum, deadline_).tangents();
     }
     return [middles = std::move(middles), tangents = std::move(tangents), length = span_->length,
             reversed = reversed_, frame = frame_](const Eigen::VectorXd& s) {
@@ -137,13 +137,13 @@ class PolygonFields {
 void add_polygon_minima(const PlacedSpan& placed, const Problem& problem, SpanOptions options,
                         SpanWorkspace& workspace, Found& found) {
   if (!problem.obstacles.empty()) {
-    note_omitted(options.log, "minima of coarse polygons, which ignore obstacles");
+    log_omitted(options.log, "minima of coarse polygons, which ignore obstacles");
     return;
   }
   const PolygonFields fields(problem, placed, options.deadline);
   for (std::size_t i = 0; i < fields.size(); ++i) {
     if (options.deadline.passed()) {
-      note_omitted(options.log, "starts after the time limit");
+      log_omitted(options.log, "starts after the time limit");
       return;
     }
     // A minimum of the polygon is near one of the rod; with too few coefficients the solver could
@@ -160,7 +160,7 @@ void add_polygon_minima(const PlacedSpan& placed, const Problem& problem, SpanOp
 }
 
 /// Largest rotation of a clamp at once that may stay on the same branch [rad].
-constexpr double largest_followed_turn = 1;
+constexpr double largest_followed_rotation = 1;
 
 /// Number of coefficients for the writhe of a shape that is only a guess.
 constexpr int terms_of_guess = 24;
@@ -185,30 +185,30 @@ class TwistedSpan {
     const TwistedPart* part = known_twist(start, placed_, l);
     if (part == nullptr) return std::nullopt;
     const auto lost =
-        turns_lost(held_.turns, part->angle, writhe(start.sample, part->begin, part->end));
+        missing_turns(held_.turns, part->angle, writhe(start.sample, part->begin, part->end));
     if (!lost || (*lost != 0 && !placed_.span.has_material_directors())) return std::nullopt;
-    SpanSolution solution =
-        next_to(field_of(start, placed_, l), {held_end_d1(held_, placed_.span), part->angle},
-                known_contacts(start, placed_, l));
+    SpanSolution solution = solve_near_twisted(
+        field_of(start, placed_, l), {prescribed_end_d1(held_, placed_.span), part->angle},
+        known_contacts(start, placed_, l));
     if (!solution.is_known()) return std::nullopt;
     return solution;
   }
 
   /// Solves from a shape without a known twist: relaxes a polygon with the prescribed turns from
   /// it, then runs Newton's method.
-  [[nodiscard]] SpanSolution downhill_of(const Equilibrium& shape) const {
+  [[nodiscard]] SpanSolution relax_from(const Equilibrium& shape) const {
     const TangentField field = field_of(shape, placed_, problem_.length);
     Span span = placed_.span;
     span.planar = false;
     SpanSolution guess = workspace_.empty_solution(span, terms_of_guess);
     guess.x = guess.model->fit(field(guess.model->nodes()));
-    EndFrame frame = frame_for(guess);
+    EndFrame frame = end_frame_for(guess);
     if (span.has_material_directors()) {
       frame.twist += guess.model->twist(guess.x);
-      return next_to(field, frame, {});
+      return solve_near_twisted(field, frame, {});
     }
     span.twist = Span::Twist{held_.stiffness, frame.d1};
-    const PenaltyPolygon polygon = rest_on_obstacles(
+    const PenaltyPolygon polygon = relax_on_obstacles(
         span,
         [&](const Eigen::VectorXd& s) {
           StartShape start = field(s);
@@ -217,7 +217,7 @@ class TwistedSpan {
         },
         Segments::all, options_.deadline, Descent::near);
     frame.twist = polygon.twist;
-    SpanSolution solution = next_to(polygon.field(), frame, polygon.contacts);
+    SpanSolution solution = solve_near_twisted(polygon.field(), frame, polygon.contacts);
     solution.evaluations += polygon.evaluations;
     return solution;
   }
@@ -234,7 +234,7 @@ class TwistedSpan {
     return found;
   }
 
-  [[nodiscard]] EndFrame frame_for(const SpanSolution& untwisted) const {
+  [[nodiscard]] EndFrame end_frame_for(const SpanSolution& untwisted) const {
     return end_frame(held_, untwisted_shape(untwisted, workspace_));
   }
 
@@ -242,8 +242,8 @@ class TwistedSpan {
   [[nodiscard]] SpanSolution followed(const Remembered& memory, double turned,
                                       const EndFrame& frame) const {
     SpanSolution solution =
-        next_to(memory.twisted.field(placed_), {frame.d1, memory.twist + turned},
-                memory.twisted.last.model->span().contacts);
+        solve_near_twisted(memory.twisted.field(placed_), {frame.d1, memory.twist + turned},
+                           memory.twisted.last.model->span().contacts);
     solution.followed = solution.is_known();
     return solution;
   }
@@ -252,21 +252,21 @@ class TwistedSpan {
   /// directors, also adds results of a search with the prescribed frame.
   [[nodiscard]] std::vector<SpanSolution> turned(const std::vector<SpanSolution>& untwisted) const {
     Found found(options_);
-    const HeldFrames held = counted_from(untwisted.front());
+    const HeldFrames held = frames_with_turns_of(untwisted.front());
     for (const SpanSolution& from : untwisted) {
       if (!succeeded(from.status)) continue;
-      found.spend(from.evaluations);
+      found.add_evaluations(from.evaluations);
       const UntwistedShape shape = untwisted_shape(from, workspace_);
       SpanSolution solution = twist_to(end_frame(held, shape), placed_.span, held.stiffness, shape,
                                        options_, workspace_);
-      if (!is_of_class(solution, held.turns.turns)) solution.fail(no_equilibrium_of_class);
+      if (!belongs_to_class(solution, held.turns.turns)) solution.fail(no_equilibrium_of_class);
       (void)found.add(std::move(solution), rotated_in_small_steps);
     }
     if (placed_.span.has_material_directors() && placed_.span.rigid_obstacles.empty()) {
       search_with_frame(held, found);
     } else {
-      note_omitted(options_.log,
-                   "unstable twisted shapes, and those that no stable one is turned to");
+      log_omitted(options_.log,
+                  "unstable twisted shapes, and those that no stable one is turned to");
     }
     return std::move(found).take();
   }
@@ -274,7 +274,7 @@ class TwistedSpan {
  private:
   /// Returns the prescribed frames. If their turns are unknown, they are counted from the best
   /// shape without twist.
-  [[nodiscard]] HeldFrames counted_from(const SpanSolution& best) const {
+  [[nodiscard]] HeldFrames frames_with_turns_of(const SpanSolution& best) const {
     HeldFrames held = held_;
     if (held.turns.turns) return held;
     const UntwistedShape shape = untwisted_shape(best, workspace_);
@@ -288,15 +288,15 @@ class TwistedSpan {
   void search_with_frame(const HeldFrames& held, Found& found) const {
     Span span = placed_.span;
     span.planar = false;
-    span.twist = Span::Twist{held.stiffness, held_end_d1(held, span), held.turns.turns};
+    span.twist = Span::Twist{held.stiffness, prescribed_end_d1(held, span), held.turns.turns};
     for (SpanSolution& solution : solve_span(span, options_, workspace_)) {
       (void)found.add(std::move(solution));
     }
   }
 
   /// Solves for the equilibrium near a known twisted shape.
-  [[nodiscard]] SpanSolution next_to(const TangentField& field, const EndFrame& frame,
-                                     std::vector<Span::Contact> contacts) const {
+  [[nodiscard]] SpanSolution solve_near_twisted(const TangentField& field, const EndFrame& frame,
+                                                std::vector<Span::Contact> contacts) const {
     Span span = placed_.span;
     if (auto moved = moved_contacts(span, std::move(contacts))) span.contacts = std::move(*moved);
     return twist_from(field, frame, span, held_.stiffness, options_, workspace_);
@@ -311,7 +311,7 @@ class TwistedSpan {
 
 }  // namespace
 
-void RememberedShape::remember(const SpanSolution& found, const PlacedSpan& placed) {
+void RememberedShape::store(const SpanSolution& found, const PlacedSpan& placed) {
   last = {};
   frame = placed.frame;
   if (!succeeded(found.status) && !found.is_singular_point()) return;
@@ -344,7 +344,7 @@ std::vector<SpanSolution> solve_untwisted(const PlacedSpan& placed, const Proble
   const bool is_known = shape == nullptr && last.is_known();
   Found found(options);
   // After a failure no shape is known.
-  if (options.only_follows() && !is_known) return list_of({});
+  if (options.only_follows() && !is_known) return as_list({});
   const double tilt = options.only_descends() ? tilt_of_points : tilt_of_equilibrium;
   const bool leaves = placed.span.confined && shape != nullptr && !options.only_descends() &&
                       is_out_of_plane(placed.span, field_of(*shape, placed, problem.length), tilt);
@@ -362,7 +362,7 @@ std::vector<SpanSolution> solve_untwisted(const PlacedSpan& placed, const Proble
     SpanSolution followed = from_start(span, options, workspace);
     const bool ends = !followed.is_known();
     // A failure means that the branch has ended or that the step was too large for it.
-    found.spend(ends ? std::exchange(followed.evaluations, 0) : 0);
+    found.add_evaluations(ends ? std::exchange(followed.evaluations, 0) : 0);
     if (!ends || options.only_follows() || options.only_descends()) {
       (void)found.add(std::move(followed));
       return std::move(found).take();
@@ -372,7 +372,8 @@ std::vector<SpanSolution> solve_untwisted(const PlacedSpan& placed, const Proble
   for (SpanSolution& solution : search_untwisted(placed.span, options, workspace)) {
     (void)found.add(std::move(solution));
   }
-  if (has_bodies(placed.span)) look_past_obstacles(placed.span, options, workspace, found);
+  if (has_passable_obstacle(placed.span))
+    search_past_obstacles(placed.span, options, workspace, found);
   const SolveStatus status = found.best().status;
   const bool at_limit =
       status == SolveStatus::evaluation_limit || status == SolveStatus::time_limit;
@@ -386,24 +387,24 @@ std::vector<SpanSolution> solve_twisted(const PlacedSpan& placed, const Problem&
                                         const SpanOptions& options, const Equilibrium* start,
                                         Remembered& memory, SpanWorkspace& workspace) {
   const TwistedSpan span(placed, problem, options, workspace);
-  if (options.only_descends()) return list_of(span.downhill_of(*start));
+  if (options.only_descends()) return as_list(span.relax_from(*start));
   const bool follows = memory.twisted.is_known() && !options.wants_all();
   if (start != nullptr && !options.wants_all() && !follows) {
     if (std::optional<SpanSolution> known = span.from_known(*start)) {
-      return list_of(std::move(*known));
+      return as_list(std::move(*known));
     }
   }
   std::vector<SpanSolution> untwisted = span.without_twist(memory.untwisted);
   if (!options.wants_all()) untwisted.resize(1);
   SpanSolution& best = untwisted.front();
-  memory.untwisted.remember(best, placed);
+  memory.untwisted.store(best, placed);
   if (!succeeded(best.status)) return untwisted;
-  const EndFrame frame = span.frame_for(best);
+  const EndFrame frame = span.end_frame_for(best);
   const double turned = frame.twist - std::exchange(memory.turned, frame.twist);
-  if (follows && std::abs(turned) < largest_followed_turn) {
+  if (follows && std::abs(turned) < largest_followed_rotation) {
     SpanSolution followed = span.followed(memory, turned, frame);
     followed.evaluations += best.evaluations;
-    if (followed.followed || options.only_follows()) return list_of(std::move(followed));
+    if (followed.followed || options.only_follows()) return as_list(std::move(followed));
   }
   if (!options.only_follows()) return span.turned(untwisted);
   best.followed = false;

@@ -21,7 +21,7 @@ struct RememberedShape {
   [[nodiscard]] bool is_known() const { return last.model != nullptr; }
   [[nodiscard]] bool planar() const { return !is_known() || last.model->span().planar; }
 
-  void remember(const SpanSolution& found, const PlacedSpan& placed);
+  void store(const SpanSolution& found, const PlacedSpan& placed);
   /// Returns the remembered shape in the frame of a span, which may differ. Exact at the remembered
   /// nodes; other arc lengths get the value of the nearest node.
   [[nodiscard]] TangentField field(const PlacedSpan& placed) const;

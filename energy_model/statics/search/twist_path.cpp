@@ -24,21 +24,21 @@ namespace {
 using std::numbers::pi;
 
 /// Size of the first, the longest and the shortest continuation step: rotation of the end [rad].
-constexpr double first_turn = 1.6;
-constexpr double longest_turn_step = 1.6;
-constexpr double least_turn = 1e-4;
+constexpr double first_rotation = 1.6;
+constexpr double longest_rotation_step = 1.6;
+constexpr double least_rotation = 1e-4;
 /// Largest step after which a shape that has become unstable is accepted, to start a descent from
 /// it [rad].
-constexpr double turn_at_loss = 0.02;
+constexpr double rotation_at_stability_loss = 0.02;
 
 /// Largest difference between the change of energy in a step and the torque's work on the same
 /// branch, divided by twice the twist energy of a straight rod rotated by the step.
-constexpr double branch_share = 0.05;
+constexpr double branch_energy_tolerance = 0.05;
 /// Largest such difference after which the next step may be longer.
-constexpr double smooth_share = 0.005;
+constexpr double smooth_energy_tolerance = 0.005;
 
 /// Eigenvalue, divided by the forces, below which rounding alone would move a shape visibly.
-constexpr double rounded_curvature = 1e-9;
+constexpr double rounding_eigenvalue = 1e-9;
 
 /// Distance of unknowns up to which a factor determines the stability of a stiff shape, and
 /// smallest eigenvalue of a stiff shape.
@@ -49,8 +49,8 @@ constexpr double least_stiff_eigenvalue = 1e-2;
 constexpr int most_branch_jumps = 60;
 
 /// Displacement along the unstable direction, and number of times that it is increased.
-constexpr double first_push = 0.1;
-constexpr int most_pushes = 4;
+constexpr double first_displacement = 0.1;
+constexpr int most_displacements = 4;
 
 /// Truncation tolerances of a path: coefficients that contribute a smaller angle [rad] are added
 /// only at the end. The second value is used if the path with the first one fails.
@@ -84,16 +84,16 @@ class TwistPath {
         tolerance_(tolerance),
         load_(span.total_load()),
         first_d1_(untwisted.end_d1) {
-    Span own = in_space(untwisted.solution.model->span());
-    own.twist = Span::Twist{stiffness, first_d1_};
-    here_ = workspace.empty_solution(own, terms_of(untwisted.solution));
+    Span twisted = in_space(untwisted.solution.model->span());
+    twisted.twist = Span::Twist{stiffness, first_d1_};
+    here_ = workspace.empty_solution(twisted, terms_of(untwisted.solution));
     here_.x = here_.model->prolong(*untwisted.solution.model, untwisted.solution.x);
   }
 
   [[nodiscard]] SpanSolution run(double whole) {
     newton(here_, NewtonMethod::corrector);
-    if (here_.is_equilibrium()) stiff_ = is_stable(here_) && stiff_;
-    double turn = std::copysign(first_turn, whole);
+    if (here_.is_equilibrium()) is_far_from_singular_ = is_stable(here_) && is_far_from_singular_;
+    double turn = std::copysign(first_rotation, whole);
     while (here_.is_equilibrium() && angle_ != whole) {
       if (options_.deadline.passed()) {
         here_.finish(SolveStatus::time_limit);
@@ -102,22 +102,22 @@ class TwistPath {
       const bool last = std::abs(whole - angle_) < 1.001 * std::abs(turn);
       const double angle = last ? whole : angle_ + turn;
       turn = angle - angle_;
-      std::optional<SpanSolution> next = stepped(turn);
+      std::optional<SpanSolution> next = continuation_step(turn);
       const bool stable = next && is_stable(*next);
-      if (next && (stable || std::abs(turn) <= turn_at_loss)) {
+      if (next && (stable || std::abs(turn) <= rotation_at_stability_loss)) {
         accept(std::move(*next), angle);
         const bool finer = resolve();
-        if (!(finer ? is_stable(here_) : stable)) leave();
-        if (smooth_) turn *= 1.5;
-        turn = std::clamp(turn, -longest_turn_step, longest_turn_step);
-      } else if (std::abs(turn) > least_turn) {
+        if (!(finer ? is_stable(here_) : stable)) leave_unstable_shape();
+        if (may_lengthen_step_) turn *= 1.5;
+        turn = std::clamp(turn, -longest_rotation_step, longest_rotation_step);
+      } else if (std::abs(turn) > least_rotation) {
         turn /= 3;
       } else {
         // The branch ends here.
         angle_ += turn;
-        turn_clamp(here_, angle_);
-        leave();
-        turn = std::copysign(turn_at_loss, whole);
+        rotate_clamp(here_, angle_);
+        leave_unstable_shape();
+        turn = std::copysign(rotation_at_stability_loss, whole);
       }
     }
     here_.evaluations = spent_;
@@ -142,22 +142,22 @@ class TwistPath {
 
   /// Returns the truncation indicator that is acceptable. The last of K coefficients contributes an
   /// angle of a_K / (2K); its effect on positions is smaller by this factor again.
-  [[nodiscard]] double tail_left(int terms) const {
+  [[nodiscard]] double allowed_truncation(int terms) const {
     const double K = terms;
     return tolerance_ * 4 * K * K;
   }
 
   /// Rotates the end's clamp by an angle relative to the untwisted rod's end frame.
-  void turn_clamp(SpanSolution& solution, double angle) const {
+  void rotate_clamp(SpanSolution& solution, double angle) const {
     const Eigen::AngleAxisd about(angle, *span_.end_direction);
     solution.model->turn_end_clamp(about * first_d1_);
   }
 
   /// Solves for the equilibrium near the extrapolation of the last two; std::nullopt if it is not
   /// on the same branch.
-  [[nodiscard]] std::optional<SpanSolution> stepped(double turn) {
+  [[nodiscard]] std::optional<SpanSolution> continuation_step(double turn) {
     SpanSolution next = here_;
-    turn_clamp(next, angle_ + turn);
+    rotate_clamp(next, angle_ + turn);
     next.evaluations = 0;
     if (slope_x_.size() == here_.x.size()) {
       next.x += turn * slope_x_;
@@ -167,8 +167,8 @@ class TwistPath {
     }
     const Eigen::VectorXd predicted = next.x;
     // If no eigenvalue is near zero, the factor from the last stability test is reused.
-    newton(next, stiff_ ? NewtonMethod::simplified : NewtonMethod::corrector);
-    next = on_obstacles(std::move(next));
+    newton(next, is_far_from_singular_ ? NewtonMethod::simplified : NewtonMethod::corrector);
+    next = update_contacts_of(std::move(next));
     spent_ += std::exchange(next.evaluations, 0);
     if (!next.is_equilibrium()) return std::nullopt;
     // On the same branch the energy changes by the torque's work. The shape is no criterion: it may
@@ -177,16 +177,16 @@ class TwistPath {
     const double unit = here_.model->span().twist->stiffness / span_.length * turn * turn;
     const double rounding = 1e-9 * (1 + load_ + std::abs(next.energy));
     const double jump = std::abs(next.energy - here_.energy - work);
-    if (!(jump <= branch_share * unit + rounding)) return std::nullopt;
-    smooth_ = jump <= smooth_share * unit + rounding;
-    aside_ = next.x.size() != predicted.size() ||
-             (next.x - predicted).norm() > (predicted - here_.x).norm();
+    if (!(jump <= branch_energy_tolerance * unit + rounding)) return std::nullopt;
+    may_lengthen_step_ = jump <= smooth_energy_tolerance * unit + rounding;
+    has_deviated_ = next.x.size() != predicted.size() ||
+                    (next.x - predicted).norm() > (predicted - here_.x).norm();
     return next;
   }
 
   /// Updates the contacts of an equilibrium that may be within rigid obstacles or be pulled by
   /// them.
-  [[nodiscard]] SpanSolution on_obstacles(SpanSolution solution) {
+  [[nodiscard]] SpanSolution update_contacts_of(SpanSolution solution) {
     if (span_.rigid_obstacles.empty() || !solution.is_equilibrium()) return solution;
     return active_set_.update(std::move(solution));
   }
@@ -210,7 +210,7 @@ class TwistPath {
     slope_x_.resize(0);
     last_step_.resize(0);
     if (next.x.size() == here_.x.size()) last_step_ = next.x - here_.x;
-    if (!aside_) {
+    if (!has_deviated_) {
       slope_x_ = last_step_ / turn;
       slope_multipliers_ = (next.multipliers - here_.multipliers) / turn;
     }
@@ -221,8 +221,8 @@ class TwistPath {
   /// Adds coefficients if the shape needs them. @return whether any were added
   bool resolve() {
     const bool affordable = here_.terms < max_terms && here_.model->size() * 5 / 4 < most_unknowns;
-    const bool resolved = here_.model->truncation(here_.x) < tail_left(here_.terms) &&
-                          here_.terms >= terms_under_twist(here_);
+    const bool resolved = here_.model->truncation(here_.x) < allowed_truncation(here_.terms) &&
+                          here_.terms >= terms_for_buckling_modes(here_);
     if (resolved || !affordable) return false;
     here_ = workspace_.with_terms(here_,
                                   std::min(max_terms, here_.terms + std::max(2, here_.terms / 4)));
@@ -234,18 +234,18 @@ class TwistPath {
   }
 
   [[nodiscard]] bool is_stable(SpanSolution& solution) {
-    stiff_ = false;
+    is_far_from_singular_ = false;
     if (!(distance_of_factor(solution) <= nearest_factor)) factor_at(solution);
     ReducedHessian& near = solution.factor->system.reduced_hessian();
     if (near.has_solutions()) {
       const std::optional<double> smallest = near.smallest_eigenvalue_of_definite();
-      stiff_ = smallest && *smallest > least_stiff_eigenvalue;
-      if (stiff_) return true;
+      is_far_from_singular_ = smallest && *smallest > least_stiff_eigenvalue;
+      if (is_far_from_singular_) return true;
     }
     if (distance_of_factor(solution) > 0) factor_at(solution);
     Eigen::MatrixXd projected = solution.factor->system.reduced_hessian().matrix();
     // Under large forces the sign of an eigenvalue near zero is lost in rounding.
-    projected.diagonal().array() += rounded_curvature * solution.multipliers.norm();
+    projected.diagonal().array() += rounding_eigenvalue * solution.multipliers.norm();
     return is_minimum(projected);
   }
 
@@ -261,16 +261,16 @@ class TwistPath {
   }
 
   /// Descends from a displaced shape to a stable one.
-  void leave() {
+  void leave_unstable_shape() {
     if (++branch_jumps_ > most_branch_jumps)
       return here_.fail("the rod jumps from branch to branch");
-    std::optional<SpanSolution> next = descended(here_);
+    std::optional<SpanSolution> next = descend_from(here_);
     // A stable shape far away may need more coefficients than the branch that ends here.
     SpanSolution finer = here_;
     while (!next && finer.terms < max_terms && 2 * finer.model->size() < most_unknowns &&
            !options_.deadline.passed()) {
       finer = workspace_.with_terms(finer, std::min(max_terms, 2 * finer.terms));
-      next = descended(finer);
+      next = descend_from(finer);
     }
     if (!next) {
       return here_.fail("nothing stable was found below a twist of " + std::to_string(angle_) +
@@ -283,26 +283,26 @@ class TwistPath {
 
   /// Displaces an unstable shape along a direction of negative curvature and descends. @return a
   /// stable equilibrium; std::nullopt if none is found
-  [[nodiscard]] std::optional<SpanSolution> descended(const SpanSolution& from) {
+  [[nodiscard]] std::optional<SpanSolution> descend_from(const SpanSolution& from) {
     const SecondDerivatives at = second_derivatives(from);
     ReducedHessian reduced;
     reduced.compute(at.hessian, at.jacobian);
-    std::optional<Eigen::VectorXd> way = negative_curvature_direction(reduced);
+    std::optional<Eigen::VectorXd> direction = negative_curvature_direction(reduced);
     // Near a fold the shape moves along the unstable direction, as in the last step.
-    if (!way && last_step_.size() == from.x.size() && last_step_.norm() > 0) {
-      way = last_step_.normalized();
+    if (!direction && last_step_.size() == from.x.size() && last_step_.norm() > 0) {
+      direction = last_step_.normalized();
     }
-    if (!way) way = direction_by_size(reduced, 0);
-    double push = first_push;
-    for (int i = 0; i < most_pushes; ++i, push *= 3) {
+    if (!direction) direction = eigenvector_by_magnitude(reduced, 0);
+    double push = first_displacement;
+    for (int i = 0; i < most_displacements; ++i, push *= 3) {
       SpanSolution next = from;
       next.evaluations = 0;
-      if (way) next.x += push * *way;
+      if (direction) next.x += push * *direction;
       descend_in_trust_region(
           next,
           {.load = load_, .gradient_tolerance = handover_gradient, .deadline = &options_.deadline});
       if (succeeded(next.status)) newton(next, NewtonMethod::newton);
-      next = on_obstacles(std::move(next));
+      next = update_contacts_of(std::move(next));
       spent_ += std::exchange(next.evaluations, 0);
       if (next.is_equilibrium() && is_stable(next)) return next;
     }
@@ -320,11 +320,11 @@ class TwistPath {
   double angle_ = 0;
   int spent_ = 0;
   int branch_jumps_ = 0;
-  bool smooth_ = false;  // the last step was shorter than necessary
-  bool aside_ = false;   // the last step has deviated from its prediction
+  bool may_lengthen_step_ = false;  // the last step was shorter than necessary
+  bool has_deviated_ = false;       // the last step has deviated from its prediction
   Eigen::VectorXd last_step_;
   Eigen::VectorXd slope_x_, slope_multipliers_;  // derivatives by the angle; empty after a jump
-  bool stiff_ = false;  // no eigenvalue of the last tested shape is near zero
+  bool is_far_from_singular_ = false;  // no eigenvalue of the last tested shape is near zero
 };
 
 /// Refines a solution with all coefficients and certifies it. If the span has rigid obstacles, the
@@ -338,10 +338,10 @@ SpanSolution certified(SpanSolution solution, const SpanOptions& options,
 
 }  // namespace
 
-Eigen::Vector3d held_end_d1(const HeldFrames& held, const Span& span) {
+Eigen::Vector3d prescribed_end_d1(const HeldFrames& held, const Span& span) {
   const Eigen::Vector3d& start = *span.start_direction;
-  const double ahead = angle_about(start, span.first_d1(start), held.start_d1);
-  return Eigen::AngleAxisd(held.turns.roll - ahead, *span.end_direction) * held.end_d1;
+  const double frame_angle = angle_about(start, span.first_d1(start), held.start_d1);
+  return Eigen::AngleAxisd(held.turns.roll - frame_angle, *span.end_direction) * held.end_d1;
 }
 
 UntwistedShape untwisted_shape(const SpanSolution& solution, SpanWorkspace& workspace) {
@@ -355,9 +355,9 @@ UntwistedShape untwisted_shape(const SpanSolution& solution, SpanWorkspace& work
 EndFrame end_frame(const HeldFrames& held, const UntwistedShape& untwisted) {
   const Span& span = untwisted.solution.model->span();
   const Eigen::Vector3d& axis = *span.end_direction;
-  const Eigen::Vector3d d1 = held_end_d1(held, span);
-  const double ahead = angle_about(axis, untwisted.end_d1, d1) - held.turns.roll;
-  return {d1, turned_angle(held.turns, ahead, untwisted.twist, untwisted.writhe)};
+  const Eigen::Vector3d d1 = prescribed_end_d1(held, span);
+  const double frame_angle = angle_about(axis, untwisted.end_d1, d1) - held.turns.roll;
+  return {d1, end_rotation(held.turns, frame_angle, untwisted.twist, untwisted.writhe)};
 }
 
 SpanSolution twist_to(const EndFrame& frame, const Span& span, double stiffness,

@@ -26,7 +26,7 @@ struct UntwistedShape {
                                              SpanWorkspace& workspace);
 
 /// Returns Span::Twist::end_d1 of a span with these prescribed frames.
-[[nodiscard]] Eigen::Vector3d held_end_d1(const HeldFrames& held, const Span& span);
+[[nodiscard]] Eigen::Vector3d prescribed_end_d1(const HeldFrames& held, const Span& span);
 
 /// Returns d1 of the later clamp, and the angle by which it twists this shape, with whole turns.
 [[nodiscard]] EndFrame end_frame(const HeldFrames& held, const UntwistedShape& untwisted);

@@ -17,7 +17,7 @@ bool is_better(const SpanSolution& a, const SpanSolution& b) {
     return solution.is_equilibrium() ? 1 : 2;
   };
   if (rank(a) != rank(b)) return rank(a) < rank(b);
-  if ((a.turns_lost == 0) != (b.turns_lost == 0)) return a.turns_lost == 0;
+  if ((a.missing_turns == 0) != (b.missing_turns == 0)) return a.missing_turns == 0;
   return a.energy < b.energy;
 }
 
@@ -63,17 +63,17 @@ std::optional<Writhe> writhe_of(const SpanSolution& solution) {
   return writhe(sample, 0, length);
 }
 
-bool is_of_class(SpanSolution& solution, const std::optional<double>& turns) {
+bool belongs_to_class(SpanSolution& solution, const std::optional<double>& turns) {
   const bool asks =
       turns && solution.is_equilibrium() && solution.model->span().has_material_directors();
   if (!asks) return true;
   const std::optional<int> lost =
-      turns_lost({.turns = turns}, solution.model->twist(solution.x), writhe_of(solution));
-  solution.turns_lost = lost.value_or(0);
+      missing_turns({.turns = turns}, solution.model->twist(solution.x), writhe_of(solution));
+  solution.missing_turns = lost.value_or(0);
   return lost.has_value();
 }
 
-std::vector<SpanSolution> list_of(SpanSolution solution) {
+std::vector<SpanSolution> as_list(SpanSolution solution) {
   std::vector<SpanSolution> result;
   result.push_back(std::move(solution));
   return result;
@@ -98,12 +98,12 @@ bool is_same_shape(const SpanSolution& a, const SpanSolution& b, double toleranc
 
 bool Found::add(SpanSolution solution, const std::string& strategy) {
   evaluations_ += std::exchange(solution.evaluations, 0);
-  if (!strategy.empty()) note_tried(options_.log, strategy);
-  if (!counts(solution, options_)) {
+  if (!strategy.empty()) log_tried(options_.log, strategy);
+  if (!is_result(solution, options_)) {
     if (found_.empty()) found_.push_back(std::move(solution));
     return false;
   }
-  if (!found_.empty() && !counts(found_.front(), options_)) found_.clear();
+  if (!found_.empty() && !is_result(found_.front(), options_)) found_.clear();
   const bool known = std::any_of(found_.begin(), found_.end(), [&](const SpanSolution& other) {
     return is_same_shape(solution, other);
   });
@@ -111,7 +111,7 @@ bool Found::add(SpanSolution solution, const std::string& strategy) {
   // Keeping the factors of many equilibria would take much memory, and most are not used again.
   if (options_.wants_all()) solution.factor.reset();
   found_.push_back(std::move(solution));
-  if (!strategy.empty()) note_found(options_.log, strategy);
+  if (!strategy.empty()) log_found(options_.log, strategy);
   return true;
 }
 
@@ -122,7 +122,7 @@ const SpanSolution& Found::best() const {
 bool Found::has_stable_lowest() const {
   const SpanSolution* lowest = nullptr;
   for (const SpanSolution& solution : found_) {
-    if (!solution.is_equilibrium() || solution.turns_lost != 0) continue;
+    if (!solution.is_equilibrium() || solution.missing_turns != 0) continue;
     if (lowest == nullptr || solution.energy < lowest->energy) lowest = &solution;
   }
   return lowest != nullptr && succeeded(lowest->status);

@@ -20,7 +20,7 @@ class SearchLog {
   void tried(const std::string& strategy, int starts = 1) { of(strategy).tried += starts; }
   /// Counts equilibria that this strategy found first.
   void found(const std::string& strategy, int equilibria = 1) {
-    of(strategy).found_first += equilibria;
+    of(strategy).new_equilibria += equilibria;
   }
   void add_omitted(const std::string& what);
 
@@ -39,22 +39,22 @@ class SearchLog {
 };
 
 /// Adds to the log if there is one.
-inline void note_tried(SearchLog* log, const std::string& strategy) {
+inline void log_tried(SearchLog* log, const std::string& strategy) {
   if (log != nullptr) log->tried(strategy);
 }
-inline void note_found(SearchLog* log, const std::string& strategy) {
+inline void log_found(SearchLog* log, const std::string& strategy) {
   if (log != nullptr) log->found(strategy);
 }
-inline void note_omitted(SearchLog* log, const std::string& what) {
+inline void log_omitted(SearchLog* log, const std::string& what) {
   if (log != nullptr) log->add_omitted(what);
 }
 
 /// Largest difference of points, divided by the length, up to which converged shapes count as one.
-inline constexpr double same_points = 1e-6;
+inline constexpr double equal_points_tolerance = 1e-6;
 
 /// Whether a solution is a result of the search. A search for all equilibria also includes those at
 /// a fold or bifurcation.
-[[nodiscard]] inline bool counts(const SpanSolution& solution, const SpanOptions& options) {
+[[nodiscard]] inline bool is_result(const SpanSolution& solution, const SpanOptions& options) {
   return solution.is_equilibrium() || (options.wants_all() && solution.is_singular_point());
 }
 
@@ -67,16 +67,16 @@ inline constexpr const char* no_equilibrium_of_class =
 [[nodiscard]] std::optional<Writhe> writhe_of(const SpanSolution& solution);
 
 /// Whether the frames along an equilibrium belong to the homotopy class that clamps with these
-/// turns prescribe; sets solution.turns_lost. Always true for a round straight rod, whose search
+/// turns prescribe; sets solution.missing_turns. Always true for a round straight rod, whose search
 /// prescribes the turns itself, and if the turns are unknown.
-[[nodiscard]] bool is_of_class(SpanSolution& solution, const std::optional<double>& turns);
+[[nodiscard]] bool belongs_to_class(SpanSolution& solution, const std::optional<double>& turns);
 
 /// Returns a list of one solution. A braced list would copy it.
-[[nodiscard]] std::vector<SpanSolution> list_of(SpanSolution solution);
+[[nodiscard]] std::vector<SpanSolution> as_list(SpanSolution solution);
 
 /// Whether two equilibria of one span are equal up to rounding and, in space, rigid-body motion.
 [[nodiscard]] bool is_same_shape(const SpanSolution& a, const SpanSolution& b,
-                                 double tolerance = same_points);
+                                 double tolerance = equal_points_tolerance);
 
 /// Results of a search: each equilibrium once, or the first failure as long as there is none; the
 /// number of all evaluations, and the log of the strategies.
@@ -88,10 +88,10 @@ class Found {
   /// @return whether it is an equilibrium that was not known
   bool add(SpanSolution solution, const std::string& strategy = {});
   /// Adds evaluations other than those of the added solutions.
-  void spend(int evaluations) { evaluations_ += evaluations; }
+  void add_evaluations(int evaluations) { evaluations_ += evaluations; }
 
   /// Solutions in the order in which they were found.
-  [[nodiscard]] const std::vector<SpanSolution>& in_order() const { return found_; }
+  [[nodiscard]] const std::vector<SpanSolution>& by_discovery() const { return found_; }
   [[nodiscard]] std::size_t size() const { return found_.size(); }
   [[nodiscard]] bool empty() const { return found_.empty(); }
   [[nodiscard]] const SpanSolution& operator[](std::size_t i) const { return found_[i]; }

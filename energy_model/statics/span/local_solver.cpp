@@ -28,7 +28,7 @@ double longest_without_load(const Span& span) {
 }
 
 /// Returns an upper bound of the curvature by couples.
-double bent_by_couples(const Span& span) {
+double curvature_bound_of_couples(const Span& span) {
   double couples = 0;
   for (const Span::Load& load : span.loads) couples += std::abs(load.couple);
   double softest = span.stiffness.head<2>().minCoeff();
@@ -38,8 +38,8 @@ double bent_by_couples(const Span& span) {
   return couples / softest;
 }
 
-int unknowns_by_term(const Span& span) {
-  return SpanTraits::fields_of(span) * static_cast<int>(pieces_of(span).size());
+int unknowns_per_term(const Span& span) {
+  return SpanTraits::fields_of(span) * static_cast<int>(elements_of(span).size());
 }
 
 /// Smallest number of coefficients of a coarse solution.
@@ -62,33 +62,33 @@ SpanTraits::SpanTraits(const Span& span)
   }
   // If contact begins inside an element, it needs more coefficients than its length suggests.
   if (!span.soft_obstacles.empty() && span.contact_ends.empty()) {
-    longest_piece = span.length;
+    longest_element = span.length;
     return;
   }
   if (span.is_plain_cantilever()) {
-    longest_piece = longest_without_load(span);
+    longest_element = longest_without_load(span);
     return;
   }
-  for (const Piece& piece : pieces_of(span)) {
-    longest_piece = std::max(longest_piece, piece.length);
+  for (const Element& element : elements_of(span)) {
+    longest_element = std::max(longest_element, element.length);
   }
   if (!span.has_material_directors() && !span.has_couples()) return;
   // The rotation of the stress-free shape, and the one by couples, have to be resolved as well.
-  const double curvature = span.natural.largest() + bent_by_couples(span);
-  natural_terms = first_terms(curvature * curvature, longest_piece);
+  const double curvature = span.natural.largest() + curvature_bound_of_couples(span);
+  natural_terms = first_terms(curvature * curvature, longest_element);
 }
 
 int affordable_terms(const Span& span) {
-  return std::max(1, most_model_unknowns / unknowns_by_term(span));
+  return std::max(1, most_model_unknowns / unknowns_per_term(span));
 }
 
 void require_affordable(const Span& span, int terms, std::string_view function) {
   const int least = terms > 0 ? terms : least_model_terms;
   if (least <= affordable_terms(span)) return;
-  const std::size_t pieces = pieces_of(span).size();
+  const std::size_t elements = elements_of(span).size();
   std::ostringstream message;
   message << function << ": " << span.loads.size() << " loads, " << span.holds.size()
-          << " grips and " << span.parts.size() << " sections of a span divide it into " << pieces
+          << " grips and " << span.parts.size() << " sections of a span divide it into " << elements
           << " elements, must be at most "
           << most_model_unknowns / (least * SpanTraits::fields_of(span)) << " of " << least
           << (terms > 0 ? "" : " or more") << " terms";
@@ -101,7 +101,7 @@ LocalSolver::LocalSolver(const Span& span, const SpanOptions& options, SpanWorks
 int LocalSolver::terms() const {
   if (options_.terms > 0) return options_.terms;
   const int layers = traits_.taut || traits_.adapted ? layer_terms : 0;
-  const int first = traits_.adapted ? 0 : first_terms(traits_.load, traits_.longest_piece);
+  const int first = traits_.adapted ? 0 : first_terms(traits_.load, traits_.longest_element);
   const int wanted = std::max({first, options_.start.known.terms(), layers, traits_.natural_terms});
   return std::min(wanted, std::max(least_terms, affordable_terms(span_)));
 }
@@ -111,8 +111,8 @@ int LocalSolver::coarse_terms() const {
   if (terms() <= few_terms) return terms();
   int coarse = terms() / 2;
   if (!span_.holds.empty()) {
-    const int pieces = static_cast<int>(pieces_of(span_).size());
-    coarse = std::min(coarse, coarse_unknowns / (traits_.fields * pieces));
+    const int elements = static_cast<int>(elements_of(span_).size());
+    coarse = std::min(coarse, coarse_unknowns / (traits_.fields * elements));
   }
   return std::max(least_terms, coarse);
 }
@@ -176,7 +176,7 @@ bool LocalSolver::prolong_known(const StartShape& wanted, SpanSolution& solution
   const KnownShape& known = options_.start.known;
   SpanEnergy& model = *solution.model;
   if (!known.model || span_.planar || span_.has_material_directors()) return false;
-  if (known.model->span().planar || known.model->pieces() != model.pieces()) return false;
+  if (known.model->span().planar || known.model->elements() != model.elements()) return false;
   if (known.model->span().cuts != span_.cuts) return false;
   solution.x = model.prolong(*known.model, known.x);
   solution.point = workspace_.newton().new_point(model);
@@ -192,7 +192,7 @@ void LocalSolver::descend(SpanSolution& solution) {
   if (gets_more && span_.is_plain_cantilever()) return;
   const bool is_rough = gets_more && !options_.wants_all() && options_.terms == 0 &&
                         solution.model->constraints() > 0;
-  newton(solution, {.step_tolerance = is_rough ? rough_step : finest_step});
+  newton(solution, {.step_tolerance = is_rough ? loose_step_tolerance : default_step_tolerance});
 }
 
 void LocalSolver::minimise(SpanSolution& solution) const {
@@ -218,7 +218,7 @@ void LocalSolver::minimise(SpanSolution& solution) const {
                       .deadline = options_.deadline});
   solution.evaluations += result.evaluations;
   // Newton's method has to verify the shape anyway.
-  solution.status = result.is_a_start() ? SolveStatus::roundoff_limited : result.status;
+  solution.status = result.is_usable_start() ? SolveStatus::roundoff_limited : result.status;
   solution.message = result.message;
 }
 

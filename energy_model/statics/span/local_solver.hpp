@@ -23,7 +23,7 @@ struct SpanTraits {
   double load;  ///< weight and loads [EI/l^2]
   int fields;
   bool adapted;  ///< the mesh is adapted to a known shape
-  double longest_piece = 0;
+  double longest_element = 0;
   int natural_terms = 0;  ///< number of coefficients needed for natural strains and couples
   bool taut = false;      ///< elements end where layers at taut segments' ends have decayed
   double stiffness = 0;   ///< largest stiffness of a taut segment along its chord [EI/l^3]
@@ -57,7 +57,7 @@ inline constexpr double handover_step = 0.1;
 inline constexpr int few_terms = 10;
 
 /// Largest number of unknowns of a trust-region descent; a step costs its cube.
-inline constexpr Eigen::Index most_descended = 160;
+inline constexpr Eigen::Index largest_descent_size = 160;
 
 /// An initial guess and, if starts were ranked, its unknowns in the model of the ranking.
 struct Start {

@@ -31,13 +31,13 @@ constexpr const char* between_found = "between two equilibria found, by Newton's
 constexpr const char* adjacent_to_found = "adjacent to an equilibrium found, by Newton's method";
 
 /// Returns the solution without its own contact ends, so that it can be combined with another one.
-SpanSolution on_shared_pieces(const SpanSolution& solution, const SpanOptions& options,
-                              SpanWorkspace& workspace) {
+SpanSolution without_own_contact_ends(const SpanSolution& solution, const SpanOptions& options,
+                                      SpanWorkspace& workspace) {
   Span span = solution.model->span();
   if (span.contact_ends.empty()) return solution;
   span.contact_ends.clear();
-  LocalSolver own(span, options, workspace);
-  return on_other_pieces(own, solution, own.coarse_terms());
+  LocalSolver local_solver(span, options, workspace);
+  return fit_to_elements(local_solver, solution, local_solver.coarse_terms());
 }
 
 /// Returns tangents of a shape at 65 arc lengths that are the same for every shape.
@@ -53,7 +53,7 @@ bool is_followed(const SpanSolution& solution, const SpanStart& start) {
     return false;
   }
   const Eigen::Matrix3Xd from = start.field(solution.model->nodes()).tangents;
-  return (solution.at_x()->tangents() - from).cwiseAbs().maxCoeff() < followed_tangents;
+  return (solution.at_x()->tangents() - from).cwiseAbs().maxCoeff() < largest_followed_change;
 }
 
 /// Solves again from a start near which Newton's method has found nothing, on an adapted mesh for
@@ -61,22 +61,22 @@ bool is_followed(const SpanSolution& solution, const SpanStart& start) {
 std::optional<SpanSolution> start_on_adapted_mesh(const LocalSolver& on) {
   const SpanStart& start = on.options().start;
   if (start.known.model || on.span().holds.empty()) return std::nullopt;
-  SpanSolution looked = on.empty_solution(max_terms);
-  looked.x = looked.model->fit(start.field(looked.model->nodes()));
-  const SpanPoint point = looked.model->evaluated(looked.x);
-  looked.multipliers = point.jacobian.transpose().householderQr().solve(point.gradient);
-  const std::optional<Span> span = adapted_mesh(on, looked);
+  SpanSolution fitted = on.empty_solution(max_terms);
+  fitted.x = fitted.model->fit(start.field(fitted.model->nodes()));
+  const SpanPoint point = fitted.model->evaluated(fitted.x);
+  fitted.multipliers = point.jacobian.transpose().householderQr().solve(point.gradient);
+  const std::optional<Span> span = adapted_mesh(on, fitted);
   if (!span) return std::nullopt;
-  LocalSolver own(*span, on.options(), on.workspace());
-  SpanSolution solution = own.newton_from(start.field);
+  LocalSolver local_solver(*span, on.options(), on.workspace());
+  SpanSolution solution = local_solver.newton_from(start.field);
   const int spent = solution.evaluations;
   if (!solution.is_equilibrium()) {
-    solution = own.empty_solution(own.terms());
+    solution = local_solver.empty_solution(local_solver.terms());
     solution.x = solution.model->fit(start.field(solution.model->nodes()));
-    own.descend_to_constraints(solution);
+    local_solver.descend_to_constraints(solution);
     solution.evaluations += spent;
   }
-  solution = refined(own, std::move(solution));
+  solution = refine(local_solver, std::move(solution));
   if (!solution.is_equilibrium()) return std::nullopt;
   return solution;
 }
@@ -92,13 +92,13 @@ SpanSolution from_given_start(LocalSolver& on) {
   if (succeeded(solution.status) && (solution.followed || !start.known.model)) return solution;
   if (on.options().only_follows()) return solution;
   const int spent = solution.evaluations;
-  const bool came_by_newton = solution.followed;
+  const bool from_newton = solution.followed;
   std::optional<SpanSolution> other = start_on_adapted_mesh(on);
   if (!other) {
     other = descends ? on.newton_from(start.field) : on.from_start(Start{start.field});
   }
   other->evaluations += spent;
-  other->followed = came_by_newton;
+  other->followed = from_newton;
   return std::move(*other);
 }
 
@@ -120,8 +120,8 @@ std::optional<NegativeCurvature> negative_curvature(const SpanSolution& solution
   SpanEnergy in_space(out.span, solution.terms);
   at = second_derivatives_at(in_space, model, solution.x);
   reduced.compute(at.hessian, at.jacobian);
-  if (std::optional<Eigen::VectorXd> way = negative_curvature_direction(reduced)) {
-    out.direction = std::move(*way);
+  if (std::optional<Eigen::VectorXd> descent = negative_curvature_direction(reduced)) {
+    out.direction = std::move(*descent);
     return out;
   }
   // Deep within a box, midway between two faces, the energy has a ridge: the model in space has one
@@ -142,23 +142,24 @@ std::optional<Eigen::VectorXd> mode_nearest_zero(const SpanSolution& solution) {
   reduced.compute(at.hessian, at.jacobian);
   const Eigen::Index free = rigid_body_modes(model.span(), solution.at_x()->tangents()).in_plane;
   if (free >= model.size() - model.constraints()) return std::nullopt;
-  return direction_by_size(reduced, free);
+  return eigenvector_by_magnitude(reduced, free);
 }
 
 std::optional<SpanSolution> leave_saddle(const SpanSolution& solution, const SpanOptions& options,
                                          SpanWorkspace& workspace) {
   constexpr double push = 0.5;
   const auto descended = [&](const Span& span, const Eigen::VectorXd& disturbance) {
-    LocalSolver own(span, options, workspace);
+    LocalSolver local_solver(span, options, workspace);
     const std::shared_ptr<SpanEnergy> model = workspace.model(span, solution.terms);
     const Eigen::VectorXd pushed = model->prolong(*solution.model, solution.x) + disturbance;
-    SpanSolution lower = own.empty_solution(std::min(solution.terms, own.coarse_terms()));
+    SpanSolution lower =
+        local_solver.empty_solution(std::min(solution.terms, local_solver.coarse_terms()));
     lower.x = lower.model->prolong(*model, pushed);
-    own.descend(lower);
-    return refined(own, std::move(lower));
+    local_solver.descend(lower);
+    return refine(local_solver, std::move(lower));
   };
-  const std::optional<NegativeCurvature> way = negative_curvature(solution);
-  if (way) return descended(way->span, push * way->direction);
+  const std::optional<NegativeCurvature> descent = negative_curvature(solution);
+  if (descent) return descended(descent->span, push * descent->direction);
   // A rod through an obstacle's middle is unstable in a mode in which its series does not show it.
   const std::optional<Eigen::VectorXd> mode = mode_nearest_zero(solution);
   if (!mode || solution.model->span().soft_obstacles.empty()) return std::nullopt;
@@ -169,25 +170,26 @@ void search_between(const SpanOptions& options, SpanWorkspace& workspace, Found&
   constexpr std::array<double, 5> shares = {0.2, 0.3, 0.5, 0.7, 0.8};
   for (std::size_t j = 1; j < found.size() && j < most_paired; ++j) {
     for (std::size_t i = 0; i < j && !options.deadline.passed(); ++i) {
-      const SpanSolution a = on_shared_pieces(found[i], options, workspace);
-      const SpanSolution b = on_shared_pieces(found[j], options, workspace);
+      const SpanSolution a = without_own_contact_ends(found[i], options, workspace);
+      const SpanSolution b = without_own_contact_ends(found[j], options, workspace);
       const Span& span = a.model->span();
       if (span.planar != b.model->span().planar || span.cuts != b.model->span().cuts) continue;
-      LocalSolver own(span, options, workspace);
+      LocalSolver local_solver(span, options, workspace);
       // In space steps with all coefficients would dominate the cost of a search; fewer converge to
       // the same equilibria.
       const int all_terms = std::max(a.terms, b.terms);
-      const int terms = span.planar ? all_terms : std::min(all_terms, own.coarse_terms());
+      const int terms = span.planar ? all_terms : std::min(all_terms, local_solver.coarse_terms());
       for (const double share : shares) {
-        SpanSolution between = own.empty_solution(terms);
+        SpanSolution between = local_solver.empty_solution(terms);
         SpanEnergy& model = *between.model;
         between.x = (1 - share) * model.prolong(*a.model, a.x);
         between.x += share * model.prolong(*b.model, b.x);
         between.multipliers = (1 - share) * model.prolong_multipliers(*a.model, a.multipliers) +
                               share * model.prolong_multipliers(*b.model, b.multipliers);
-        own.newton(between);
-        (void)found.add(judged(refined(own, std::move(between)), options, workspace),
-                        between_found);
+        local_solver.newton(between);
+        (void)found.add(
+            certified_solution(refine(local_solver, std::move(between)), options, workspace),
+            between_found);
       }
     }
   }
@@ -201,17 +203,18 @@ void search_adjacent(const SpanOptions& options, SpanWorkspace& workspace, Found
   constexpr std::array<double, 6> steps = {0.5, -0.5, 1, -1, 2, -2};
   std::size_t i = 0;
   for (; i < found.size() && i < most_searched_adjacent && !options.deadline.passed(); ++i) {
-    if (!counts(found[i], options)) continue;
+    if (!is_result(found[i], options)) continue;
     const SpanSolution from = found[i];
     const std::optional<Eigen::VectorXd> mode = mode_nearest_zero(from);
     if (!mode) continue;
-    LocalSolver own(from.model->span(), options, workspace);
+    LocalSolver local_solver(from.model->span(), options, workspace);
     for (const double step : steps) {
-      SpanSolution beside = workspace.with_terms(from, from.terms);
-      beside.x += step * *mode;
-      own.newton(beside);
-      (void)found.add(judged(refined(own, std::move(beside)), options, workspace),
-                      adjacent_to_found);
+      SpanSolution displaced = workspace.with_terms(from, from.terms);
+      displaced.x += step * *mode;
+      local_solver.newton(displaced);
+      (void)found.add(
+          certified_solution(refine(local_solver, std::move(displaced)), options, workspace),
+          adjacent_to_found);
     }
   }
   if (i >= found.size()) return;
@@ -223,14 +226,14 @@ SpanSolution solve_from_given_start(const Span& span, const SpanOptions& options
                                     SpanWorkspace& workspace) {
   LocalSolver on(span, options, workspace);
   SpanSolution solution = from_given_start(on);
-  const bool came_by_newton = solution.followed;
+  const bool from_newton = solution.followed;
   // A shape on soft obstacles may jump to another one when contact is found during refinement.
-  const bool may_fall = came_by_newton && !span.soft_obstacles.empty();
-  const Eigen::Matrix3Xd near = may_fall ? tangents_to_compare(solution) : Eigen::Matrix3Xd();
+  const bool may_descend = from_newton && !span.soft_obstacles.empty();
+  const Eigen::Matrix3Xd near = may_descend ? tangents_to_compare(solution) : Eigen::Matrix3Xd();
   solution = finish(std::move(solution), options, workspace);
   solution.followed =
-      came_by_newton && !(may_fall && (tangents_to_compare(solution) - near).cwiseAbs().maxCoeff() >
-                                          followed_tangents);
+      from_newton && !(may_descend && (tangents_to_compare(solution) - near).cwiseAbs().maxCoeff() >
+                                          largest_followed_change);
   const bool leaves =
       (options.only_descends() || (options.start.known.model && !options.only_follows())) &&
       solution.status == SolveStatus::saddle;

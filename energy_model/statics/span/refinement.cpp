@@ -40,7 +40,7 @@ class Refinement {
     // Contacts divide the rod into short elements; it may still need the coefficients of its load.
     const int least = touches ? std::max(32, on_.terms()) : 32;
     const int affordable =
-        std::min(std::max(least, unknowns / (traits_.fields * solution.model->pieces())),
+        std::min(std::max(least, unknowns / (traits_.fields * solution.model->elements())),
                  std::max(solution.terms, affordable_terms(solution.model->span())));
     // A shape that is not smooth between the ends of contact has passed through a body's middle.
     constexpr int most_between_contact_ends = 40;
@@ -49,7 +49,7 @@ class Refinement {
     bool solved_again = false;
     while (solution.is_equilibrium()) {
       solution.resolved = options_.terms > 0 || resolved(solution);
-      if (solution.resolved && solution.next_step > coarsest_step && !solved_again) {
+      if (solution.resolved && solution.next_step > largest_stagnation_step && !solved_again) {
         on_.newton(solution);
         solved_again = true;
         continue;
@@ -71,7 +71,7 @@ class Refinement {
       // Grips may pull harder than weight and loads.
       if (solution.multipliers.size() > 0 && !traits_.taut && !traits_.adapted) {
         more = std::max(
-            more, first_terms(solution.multipliers.cwiseAbs().maxCoeff(), traits_.longest_piece));
+            more, first_terms(solution.multipliers.cwiseAbs().maxCoeff(), traits_.longest_element));
       }
       solution = with_terms(solution, std::min(most_terms, more));
     }
@@ -86,9 +86,9 @@ class Refinement {
     const std::optional<Span> span = adapted_mesh(on_, solution);
     if (!span) return std::nullopt;
     LocalSolver adapted(*span, options_, on_.workspace());
-    SpanSolution finer = on_other_pieces(adapted, solution, adapted.terms());
+    SpanSolution finer = fit_to_elements(adapted, solution, adapted.terms());
     on_.newton(finer);
-    finer = refined(adapted, std::move(finer));
+    finer = refine(adapted, std::move(finer));
     if (!finer.is_equilibrium()) return std::nullopt;
     return finer;
   }
@@ -99,7 +99,7 @@ class Refinement {
     const Eigen::VectorXd x = finer.x;
     const Eigen::VectorXd multipliers = finer.multipliers;
     on_.newton(finer);
-    const bool descends = finer.model->size() <= most_descended;
+    const bool descends = finer.model->size() <= largest_descent_size;
     if (descends && (!finer.is_equilibrium() || finer.model->has_soft_obstacles()))
       on_.descend(finer);
     if (!finer.is_equilibrium() && !finer.model->has_soft_obstacles()) {
@@ -113,7 +113,7 @@ class Refinement {
 
   [[nodiscard]] bool resolved(const SpanSolution& solution) {
     if (span_.is_plain_cantilever() && solution.terms < on_.terms()) return false;
-    if (span_.twist && solution.terms < terms_under_twist(solution)) return false;
+    if (span_.twist && solution.terms < terms_for_buckling_modes(solution)) return false;
     const double K = solution.terms;
     // The last coefficient contributes an angle of a_K / (2K); its effect on positions is smaller
     // by this factor again.
@@ -149,11 +149,11 @@ constexpr int first_round_terms = 16;
 
 /// Movement of the ends, divided by the rod length, below which coefficients are added, and below
 /// which the iteration ends.
-constexpr double ends_nearly_settled = 1e-4;
-constexpr double ends_settled = 1e-9;
+constexpr double ends_nearly_converged = 1e-4;
+constexpr double ends_converged = 1e-9;
 
 /// Returns the largest movement of an end; infinity if the number of ends has changed.
-double moved_by(const std::vector<double>& before, const std::vector<double>& now) {
+double largest_movement(const std::vector<double>& before, const std::vector<double>& now) {
   if (before.size() != now.size()) return std::numeric_limits<double>::infinity();
   double moved = 0;
   for (std::size_t i = 0; i < now.size(); ++i) {
@@ -166,7 +166,7 @@ double moved_by(const std::vector<double>& before, const std::vector<double>& no
 /// (Span::contact_ends). The force per length has a kink there, which no series represents. The
 /// ends of each round are those of the previous shape. Their error changes the shape by about its
 /// square, so that a few rounds determine both.
-SpanSolution with_found_pieces(LocalSolver& on, SpanSolution solution) {
+SpanSolution refine_contact_ends(LocalSolver& on, SpanSolution solution) {
   Span span = on.span();
   std::vector<double> ends = contact_ends(solution);
   bool refined = false;
@@ -180,16 +180,16 @@ SpanSolution with_found_pieces(LocalSolver& on, SpanSolution solution) {
     LocalSolver own(span, on.options(), on.workspace());
     if (!same_pieces) {
       const int terms = refined ? solution.terms : std::min(solution.terms, first_round_terms);
-      solution = on_other_pieces(own, solution, on.options().terms > 0 ? solution.terms : terms);
+      solution = fit_to_elements(own, solution, on.options().terms > 0 ? solution.terms : terms);
       own.newton(solution);
       if (!solution.is_equilibrium()) own.descend(solution);
     }
     if (refined || same_pieces) solution = Refinement(own).run(std::move(solution));
     if (!solution.is_equilibrium()) return solution;
     std::vector<double> now = contact_ends(solution);
-    const double moved = moved_by(ends, now);
-    if ((refined || same_pieces) && moved <= ends_settled) return solution;
-    refined = refined || moved <= ends_nearly_settled;
+    const double moved = largest_movement(ends, now);
+    if ((refined || same_pieces) && moved <= ends_converged) return solution;
+    refined = refined || moved <= ends_nearly_converged;
     ends = std::move(now);
   }
   if (solution.is_equilibrium()) {
@@ -201,9 +201,9 @@ SpanSolution with_found_pieces(LocalSolver& on, SpanSolution solution) {
 
 }  // namespace
 
-SpanSolution refined(LocalSolver& on, SpanSolution solution) {
+SpanSolution refine(LocalSolver& on, SpanSolution solution) {
   return on.span().soft_obstacles.empty() ? Refinement(on).run(std::move(solution))
-                                          : with_found_pieces(on, std::move(solution));
+                                          : refine_contact_ends(on, std::move(solution));
 }
 
 std::optional<Span> adapted_mesh(const LocalSolver& on, const SpanSolution& shape) {
@@ -214,21 +214,22 @@ std::optional<Span> adapted_mesh(const LocalSolver& on, const SpanSolution& shap
     return std::nullopt;
   }
   Span result = shape.model->span();
-  result.cuts = piece_cuts(shape);
+  result.cuts = element_cuts(shape);
   if (result.cuts.empty()) return std::nullopt;
   return result;
 }
 
-SpanSolution judged(SpanSolution solution, const SpanOptions& options, SpanWorkspace& workspace) {
+SpanSolution certified_solution(SpanSolution solution, const SpanOptions& options,
+                                SpanWorkspace& workspace) {
   const double load = solution.model->span().total_load();
   const int spent = solution.evaluations;
   certify(solution, load, workspace.factors());
   solution.evaluations = spent;
   const bool asks = solution.status == SolveStatus::near_singular ||
-                    (counts(solution, options) && solution.error > largest_unrefined_error);
+                    (is_result(solution, options) && solution.error > largest_unrefined_error);
   const int more = std::min(max_terms, 3 * solution.terms / 2);
   if (!asks || options.terms > 0 || options.deadline.passed() ||
-      more * SpanTraits::fields_of(solution.model->span()) * solution.model->pieces() >
+      more * SpanTraits::fields_of(solution.model->span()) * solution.model->elements() >
           most_unknowns) {
     return solution;
   }
@@ -239,7 +240,7 @@ SpanSolution judged(SpanSolution solution, const SpanOptions& options, SpanWorks
   on.newton(finer);
   // For a singular point that Newton's method has reported, it was not checked whether the
   // coefficients resolve it.
-  if (!solution.resolved) finer = refined(on, std::move(finer));
+  if (!solution.resolved) finer = refine(on, std::move(finer));
   finer.resolved = finer.resolved || solution.resolved;
   certify(finer, load, workspace.factors());
   const int evaluations = solution.evaluations + finer.evaluations;
@@ -253,10 +254,10 @@ SpanSolution judged(SpanSolution solution, const SpanOptions& options, SpanWorks
 SpanSolution finish(SpanSolution solution, const SpanOptions& options, SpanWorkspace& workspace) {
   const Span own = solution.model->span();
   LocalSolver on(own, options, workspace);
-  return judged(refined(on, std::move(solution)), options, workspace);
+  return certified_solution(refine(on, std::move(solution)), options, workspace);
 }
 
-SpanSolution on_other_pieces(LocalSolver& on, const SpanSolution& solution, int terms) {
+SpanSolution fit_to_elements(LocalSolver& on, const SpanSolution& solution, int terms) {
   SpanSolution other = on.empty_solution(terms);
   const TangentField field = solution.model->field(solution.x);
   other.x = other.model->fit(field(other.model->nodes()));

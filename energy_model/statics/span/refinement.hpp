@@ -10,7 +10,7 @@ namespace dlo::energy_model {
 /// Raises the number of coefficients of an equilibrium until the last ones are negligible; if the
 /// affordable number is not enough, continues on an adapted mesh.
 /// @param solution  on the span of `on`, with its own elements
-[[nodiscard]] SpanSolution refined(LocalSolver& on, SpanSolution solution);
+[[nodiscard]] SpanSolution refine(LocalSolver& on, SpanSolution solution);
 
 /// Returns the span with a mesh adapted to a shape; std::nullopt if its mesh is already adapted, if
 /// nothing is to be cut, and for obstacles, material directors or a given number of coefficients.
@@ -22,8 +22,8 @@ namespace dlo::energy_model {
 /// whose evaluations count, unless options.terms is given, the time is up or there would be too
 /// many unknowns. The second solution is returned if it is more accurate, or if only it is an
 /// equilibrium.
-[[nodiscard]] SpanSolution judged(SpanSolution solution, const SpanOptions& options,
-                                  SpanWorkspace& workspace);
+[[nodiscard]] SpanSolution certified_solution(SpanSolution solution, const SpanOptions& options,
+                                              SpanWorkspace& workspace);
 
 /// Refines an equilibrium with too few coefficients, on its own span, and certifies it.
 [[nodiscard]] SpanSolution finish(SpanSolution solution, const SpanOptions& options,
@@ -31,7 +31,7 @@ namespace dlo::energy_model {
 
 /// Fits the shape of a solution, by its tangents, on a span with other elements. The result is not
 /// an equilibrium yet.
-[[nodiscard]] SpanSolution on_other_pieces(LocalSolver& on, const SpanSolution& solution,
+[[nodiscard]] SpanSolution fit_to_elements(LocalSolver& on, const SpanSolution& solution,
                                            int terms);
 
 }  // namespace dlo::energy_model

@@ -37,7 +37,7 @@ struct KnownShape {
 
 /// Largest difference of tangents [-] between a shape and the known one from which it was followed;
 /// beyond it, Newton's method has converged to another shape.
-inline constexpr double followed_tangents = 0.3;
+inline constexpr double largest_followed_change = 0.3;
 
 /// A shape to start from, instead of a search.
 struct SpanStart {
@@ -55,7 +55,7 @@ struct SpanOptions {
   /// Log of a search for all equilibria; null: only the lowest one is wanted.
   SearchLog* log = nullptr;
   /// Counts the starts that pass obstacles on another side; null: not counted.
-  int* passing_starts = nullptr;
+  int* other_side_starts = nullptr;
 
   [[nodiscard]] bool wants_all() const { return log != nullptr; }
   [[nodiscard]] bool only_follows() const { return start.approach == Approach::follow_only; }

@@ -22,7 +22,7 @@ namespace {
 
 /// Sum of weight and loads [EI/l^2] above which a rod is closer to its soft limit than to the
 /// straight rod.
-constexpr double soft_load = 12;
+constexpr double soft_limit_load = 12;
 
 /// Whether all tangents of a plain cantilever that is pulled in one direction lie between the
 /// clamp's direction and the load's, on the shorter way. An equilibrium with this property is the
@@ -33,7 +33,7 @@ constexpr double soft_load = 12;
 /// There is only one such solution, because sin(chi) / chi decreases (Brezis and Oswald, 1986). A
 /// second one, chi = 0, exists only if the clamp points against the load; it is unstable unless it
 /// is the only one.
-bool turns_to_load(const Span& span, const Eigen::Matrix3Xd& tangents) {
+bool rotates_towards_load(const Span& span, const Eigen::Matrix3Xd& tangents) {
   constexpr double rounding = 1e-9;  // sine of the angle error by truncation
   Eigen::Vector3d force = span.weight_between(0, span.length);
   for (const Span::Load& load : span.loads) force += load.force;
@@ -68,12 +68,12 @@ constexpr std::size_t followed_starts_beside_obstacles = 6;
 
 /// Largest difference of points, divided by the length, up to which loosely converged shapes count
 /// as one.
-constexpr double same_coarse_points = 10 * rough_step;
+constexpr double same_coarse_points = 10 * loose_step_tolerance;
 
 /// Maximum number of unstable equilibria from which a descent is started.
 constexpr std::size_t most_saddles = 8;
 
-constexpr const char* left_downhill = "unstable equilibria, followed downhill";
+constexpr const char* saddle_descent_strategy = "unstable equilibria, followed downhill";
 constexpr const char* out_of_plane = "the same starts and others, out of the plane";
 
 /// Describes start_fields() and natural_fields() in words.
@@ -89,18 +89,18 @@ std::string starts_of(const Span& span) {
 /// descent follows from the soft limit.
 SpanSolution plain_cantilever(LocalSolver& on) {
   SpanSolution at_once = on.empty_solution(on.terms());
-  if (on.traits().load < soft_load) {
+  if (on.traits().load < soft_limit_load) {
     bend_slightly(at_once, on.workspace().newton());
   } else {
-    at_once.x = at_once.model->fit(soft_field(on.span())(at_once.model->nodes()));
+    at_once.x = at_once.model->fit(soft_limit_field(on.span())(at_once.model->nodes()));
   }
   on.newton(at_once);
-  at_once = refined(on, std::move(at_once));
+  at_once = refine(on, std::move(at_once));
   if (succeeded(at_once.status) && at_once.evaluations <= on.options().max_evaluations &&
-      turns_to_load(on.span(), at_once.at_x()->tangents())) {
+      rotates_towards_load(on.span(), at_once.at_x()->tangents())) {
     return at_once;
   }
-  SpanSolution solution = refined(on, on.from_start(Start{soft_field(on.span())}));
+  SpanSolution solution = refine(on, on.from_start(Start{soft_limit_field(on.span())}));
   solution.evaluations += at_once.evaluations;
   return solution;
 }
@@ -119,7 +119,7 @@ class Search {
     if (!options_.wants_all() && span_.is_plain_cantilever() && span_.has_unidirectional_load()) {
       SpanSolution solution = plain_cantilever(on_);
       if (!span_.confined) certify_out_of_plane(solution, traits_.load, workspace_.factors());
-      if (solution.status != SolveStatus::saddle) return list_of(std::move(solution));
+      if (solution.status != SolveStatus::saddle) return as_list(std::move(solution));
       (void)add(std::move(solution));
     }
     if (options_.wants_all()) {
@@ -143,8 +143,8 @@ class Search {
     const std::string kind = starts_of(span_);
     for (const Start& start : starts()) {
       if (on_.out_of_time()) return;
-      (void)add(refined(on_, on_.from_start(start)), kind + ", downhill");
-      (void)add(refined(on_, on_.newton_from(start.field)), kind + ", by Newton's method");
+      (void)add(refine(on_, on_.from_start(start)), kind + ", downhill");
+      (void)add(refine(on_, on_.newton_from(start.field)), kind + ", by Newton's method");
       leave_saddles();
     }
   }
@@ -160,7 +160,7 @@ class Search {
       // A factor is not needed for later refinement and would occupy memory.
       if (!coarse.empty()) coarse.back().factor.reset();
       SpanSolution solution = on_.from_start(starts[i]);
-      found_.spend(std::exchange(solution.evaluations, 0));
+      found_.add_evaluations(std::exchange(solution.evaluations, 0));
       const bool known = std::any_of(coarse.begin(), coarse.end(), [&](const auto& other) {
         return other.is_equilibrium() && is_same_shape(solution, other, same_coarse_points);
       });
@@ -180,23 +180,24 @@ class Search {
     });
     for (SpanSolution& solution : coarse) {
       const double above = solution.energy - lowest_coarse_;
-      const bool higher = above >= fall_ || std::abs(above) <= 1e-8 * (1 + traits_.load);
+      const bool higher =
+          above >= last_refinement_decrease_ || std::abs(above) <= 1e-8 * (1 + traits_.load);
       if (found_.has_stable_lowest() && (higher || !solution.is_equilibrium())) continue;
-      SpanSolution fine = refined(on_, solution);
+      SpanSolution fine = refine(on_, solution);
       lowest_coarse_ = solution.energy;
-      fall_ = std::max(0.0, solution.energy - fine.energy);
+      last_refinement_decrease_ = std::max(0.0, solution.energy - fine.energy);
       (void)add(std::move(fine));
     }
   }
 
   void log_omitted() const {
     if (on_.out_of_time()) options_.log->add_omitted("starts after the time limit");
-    std::ptrdiff_t not_left = 0;
-    for (std::size_t i = left_; i < found_.size(); ++i) {
-      not_left += found_[i].status == SolveStatus::saddle ? 1 : 0;
+    std::ptrdiff_t saddles = 0;
+    for (std::size_t i = saddles_left_; i < found_.size(); ++i) {
+      saddles += found_[i].status == SolveStatus::saddle ? 1 : 0;
     }
-    if (left_ < most_saddles || not_left == 0) return;
-    options_.log->add_omitted(std::to_string(not_left) + " unstable equilibria, beyond the first " +
+    if (saddles_left_ < most_saddles || saddles == 0) return;
+    options_.log->add_omitted(std::to_string(saddles) + " unstable equilibria, beyond the first " +
                               std::to_string(most_saddles) +
                               " found, which were not followed downhill");
   }
@@ -228,7 +229,7 @@ class Search {
                                        !trial.model->has_soft_obstacles() &&
                                        !span_.has_material_directors();
     satisfies_constraints ? rank_with_constraints(trial, ranked) : rank_with_springs(trial, ranked);
-    found_.spend(trial.evaluations);
+    found_.add_evaluations(trial.evaluations);
     std::stable_sort(ranked.begin(), ranked.end(), is_cheaper);
     return ranked;
   }
@@ -256,8 +257,8 @@ class Search {
     const double kappa = 100 * (1 + traits_.load);
     SpanEnergy& model = *trial.model;
     for (Start& start : starts) {
-      const SpanEnergy::Estimate seen = model.estimate(start.field(model.nodes()).tangents);
-      start.cost = seen.energy + kappa / 2 * seen.gap * seen.gap;
+      const SpanEnergy::Estimate estimated = model.estimate(start.field(model.nodes()).tangents);
+      start.cost = estimated.energy + kappa / 2 * estimated.gap * estimated.gap;
     }
     std::stable_sort(starts.begin(), starts.end(), is_cheaper);
     std::vector<double> energies;  // lowest energies of starts that satisfy the constraints
@@ -268,12 +269,12 @@ class Search {
       const double most =
           energies.size() < followed() ? std::numeric_limits<double>::infinity() : energies.back();
       const StartShape shape = start.field(model.nodes());
-      const SpanEnergy::Estimate seen = model.estimate(shape.tangents);
+      const SpanEnergy::Estimate estimated = model.estimate(shape.tangents);
       // A fit with few coefficients is smoother, and satisfying the constraints may straighten it.
-      if (seen.energy - seen.bending / 2 > most) continue;
+      if (estimated.energy - estimated.bending / 2 > most) continue;
       constexpr int no_corrections = 0;
       trial.evaluate(model.fit(shape, no_corrections), point);
-      if (!restore(trial, point, loosest_gap, scratch, most)) {
+      if (!restore_constraints(trial, point, largest_constraint_residual, scratch, most)) {
         start.cost = std::max(start.cost, most);
         continue;
       }
@@ -293,7 +294,7 @@ class Search {
       return solution.status == SolveStatus::saddle;
     };
     if (!options_.wants_all() &&
-        std::none_of(found_.in_order().begin(), found_.in_order().end(), is_saddle)) {
+        std::none_of(found_.by_discovery().begin(), found_.by_discovery().end(), is_saddle)) {
       return;
     }
     Span space = span_;
@@ -314,25 +315,26 @@ class Search {
   /// Certifies and adds a refined solution. @param strategy  name in the log; empty: not logged
   bool add(SpanSolution solution, const std::string& strategy = {}) {
     if (!is_of_span_class(solution)) return false;
-    return found_.add(judged(std::move(solution), options_, workspace_), strategy);
+    return found_.add(certified_solution(std::move(solution), options_, workspace_), strategy);
   }
 
-  /// Whether the solution belongs to the homotopy class of the clamps (is_of_class()); counts the
-  /// evaluations of others.
+  /// Whether the solution belongs to the homotopy class of the clamps (belongs_to_class()); counts
+  /// the evaluations of others.
   [[nodiscard]] bool is_of_span_class(SpanSolution& solution) {
-    if (!span_.twist || is_of_class(solution, span_.twist->turns)) return true;
-    found_.spend(std::exchange(solution.evaluations, 0));
+    if (!span_.twist || belongs_to_class(solution, span_.twist->turns)) return true;
+    found_.add_evaluations(std::exchange(solution.evaluations, 0));
     return false;
   }
 
   /// Descends from the unstable equilibria, including those that such a descent finds.
   void leave_saddles() {
-    for (; left_ < found_.size() && left_ < most_saddles && !on_.out_of_time(); ++left_) {
+    for (; saddles_left_ < found_.size() && saddles_left_ < most_saddles && !on_.out_of_time();
+         ++saddles_left_) {
       if (!options_.wants_all() && found_.has_stable_lowest()) return;
-      if (found_[left_].status != SolveStatus::saddle) continue;
-      const SpanSolution saddle = found_[left_];
+      if (found_[saddles_left_].status != SolveStatus::saddle) continue;
+      const SpanSolution saddle = found_[saddles_left_];
       std::optional<SpanSolution> lower = leave_saddle(saddle, options_, workspace_);
-      if (lower) (void)add(std::move(*lower), left_downhill);
+      if (lower) (void)add(std::move(*lower), saddle_descent_strategy);
     }
   }
 
@@ -354,15 +356,16 @@ class Search {
   Found found_;
   // Coarse energy of the last equilibrium that was refined, and its decrease by refinement.
   double lowest_coarse_ = std::numeric_limits<double>::infinity();
-  double fall_ = 0;
-  std::size_t left_ = 0;  // number of equilibria found from which a descent was tried or not needed
+  double last_refinement_decrease_ = 0;
+  std::size_t saddles_left_ =
+      0;  // number of equilibria found from which a descent was tried or not needed
 };
 
 }  // namespace
 
 std::vector<SpanSolution> solve_span(const Span& span, const SpanOptions& options,
                                      SpanWorkspace& workspace) {
-  if (options.start.field) return list_of(solve_from_given_start(span, options, workspace));
+  if (options.start.field) return as_list(solve_from_given_start(span, options, workspace));
   return Search(span, options, workspace).run();
 }
 

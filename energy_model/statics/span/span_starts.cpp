@@ -122,13 +122,14 @@ class GrippedField {
   /// Returns the force normal to the pull, on a taut segment beyond s, which deflects it from the
   /// chord; its mean is subtracted, so that the segment ends at the chord's end. At a load it
   /// changes over the length of a layer.
-  [[nodiscard]] Eigen::Vector3d across_pull(const Segment& segment, double s) const {
+  [[nodiscard]] Eigen::Vector3d transverse_force(const Segment& segment, double s) const {
     Eigen::Vector3d force = span_.weight_between(s, (segment.begin + segment.end) / 2);
     const double layer = 1 / std::sqrt(segment.tension);
     for (const Span::Load& load : span_.loads) {
       if (!(load.at > segment.begin && load.at < segment.end)) continue;
-      const double away = (load.at - s) / layer;
-      const double beyond = 0.5 + std::copysign(0.5 * -std::expm1(-std::abs(away)), away);
+      const double scaled_distance = (load.at - s) / layer;
+      const double beyond =
+          0.5 + std::copysign(0.5 * -std::expm1(-std::abs(scaled_distance)), scaled_distance);
       force += (beyond - (load.at - segment.begin) / segment.length()) * load.force;
     }
     return force - force.dot(segment.pull) * segment.pull;
@@ -139,7 +140,7 @@ class GrippedField {
   [[nodiscard]] Eigen::Vector3d stretched(std::size_t i, double u) const {
     const Segment& segment = segments_[i];
     const auto pull_at = [&](double s) {
-      return Eigen::Vector3d(segment.tension * segment.pull + across_pull(segment, s));
+      return Eigen::Vector3d(segment.tension * segment.pull + transverse_force(segment, s));
     };
     const double from_begin = u * segment.length();
     const Eigen::Vector3d begin_pull = pull_at(segment.begin);
@@ -202,7 +203,7 @@ TangentField field(Tangent tangent) {
 /// Returns a shape from a clamp down onto an obstacle and along it. It reaches the obstacle over
 /// (72 EI h / w)^(1/4), as a rod of small slopes does under its weight w from the height h. Returns
 /// std::nullopt if the rod does not reach the obstacle.
-std::optional<TangentField> lying_field(const Span& span, const Span::Obstacle& obstacle) {
+std::optional<TangentField> field_on_obstacle(const Span& span, const Span::Obstacle& obstacle) {
   if (!obstacle.body.is_half_space()) return {};
   const Eigen::Vector3d normal = obstacle.body.normal();
   const double pressed = -span.mean_weight().dot(normal);
@@ -223,7 +224,7 @@ std::optional<TangentField> lying_field(const Span& span, const Span::Obstacle& 
 }
 
 /// Arc lengths at which a start is compared with the prescribed frame at the end.
-Eigen::VectorXd compared_at(const Span& span) {
+Eigen::VectorXd comparison_arc_lengths(const Span& span) {
   constexpr Eigen::Index points = 257;
   return Eigen::VectorXd::LinSpaced(points, 0, span.length);
 }
@@ -236,9 +237,9 @@ std::array<double, 2> angles_of_class(double angle) {
 }
 
 /// natural_fields() with a prescribed frame at the end.
-std::vector<TangentField> held_fields(const Span& span) {
+std::vector<TangentField> fields_with_end_frame(const Span& span) {
   std::vector<TangentField> fields;
-  const Eigen::VectorXd s = compared_at(span);
+  const Eigen::VectorXd s = comparison_arc_lengths(span);
   const Eigen::Vector3d chord = span.holds.back().offset / span.length;
   for (const TangentField& plain : start_fields(span)) {
     Eigen::Matrix3Xd tangents(3, s.size() + 2);
@@ -256,7 +257,7 @@ std::vector<TangentField> held_fields(const Span& span) {
 
 }  // namespace
 
-TangentField soft_field(const Span& span) {
+TangentField soft_limit_field(const Span& span) {
   return field([&span](double s) {
     return pendulum(span, *span.start_direction, total_force(span, 0), s, 0);
   });
@@ -268,12 +269,14 @@ std::vector<TangentField> start_fields(const Span& span) {
   std::vector<TangentField> fields;
   if (span.holds.empty() && span.start_direction) {
     for (const Span::SoftObstacle& obstacle : span.soft_obstacles) {
-      if (std::optional<TangentField> lying = lying_field(span, obstacle)) fields.push_back(*lying);
+      if (std::optional<TangentField> lying = field_on_obstacle(span, obstacle))
+        fields.push_back(*lying);
     }
     for (const Span::Obstacle& obstacle : span.rigid_obstacles) {
-      if (std::optional<TangentField> lying = lying_field(span, obstacle)) fields.push_back(*lying);
+      if (std::optional<TangentField> lying = field_on_obstacle(span, obstacle))
+        fields.push_back(*lying);
     }
-    fields.push_back(soft_field(span));
+    fields.push_back(soft_limit_field(span));
     fields.push_back(field([&span](double) { return *span.start_direction; }));
     fields.push_back(field([&span](double s) {
       return pendulum(span, *span.start_direction, total_force(span, 0), s, 1);
@@ -300,7 +303,7 @@ std::vector<TangentField> start_fields(const Span& span) {
 }
 
 std::vector<TangentField> natural_fields(const Span& span) {
-  if (span.twist && span.twist->turns) return held_fields(span);
+  if (span.twist && span.twist->turns) return fields_with_end_frame(span);
   std::vector<TangentField> fields;
   const SpanEnergy model(span, natural_shape_terms);
   const SpanShape free = model.shape(Eigen::VectorXd::Zero(model.size()));

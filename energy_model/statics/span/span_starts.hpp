@@ -16,7 +16,7 @@ namespace dlo::energy_model {
 
 /// Returns the pendulum's profile 4 atan(tan(psi/4) exp(-sqrt(n) s)) from a clamp towards the sum n
 /// of weight and loads by the shorter way: the limit shape of a soft rod.
-[[nodiscard]] TangentField soft_field(const Span& span);
+[[nodiscard]] TangentField soft_limit_field(const Span& span);
 
 /// Returns a shape through the anchor and the other grips of a span: arches of the right slack that
 /// hang in the direction of the load, and beyond the outermost grips the pendulum's profile.

@@ -8,8 +8,8 @@
 namespace dlo::energy_model {
 namespace {
 
-constexpr Eigen::Index known_of_short = 4;  // coefficients of the force on a short part
-constexpr int pressure_samples = 32;        // number of samples of the pressure on an element
+constexpr Eigen::Index force_terms_of_short_part = 4;  // coefficients of the force on a short part
+constexpr int pressure_samples = 32;  // number of samples of the pressure on an element
 
 /// Evaluates a series in orthonormal Legendre polynomials at xi.
 double series(const Eigen::Ref<const Eigen::VectorXd>& coefficients, double xi) {
@@ -36,21 +36,21 @@ void add_pressure(const Eigen::VectorXd& smooth, double length, bool first, Cont
 
 }  // namespace
 
-Eigen::MatrixXd ContactPlace::along(const Eigen::MatrixX3d& vectors) const {
+Eigen::MatrixXd ContactEvaluation::along(const Eigen::MatrixX3d& vectors) const {
   Eigen::MatrixXd result = vectors.col(0).asDiagonal() * by_tangent[0];
   result += vectors.col(1).asDiagonal() * by_tangent[1];
   result += vectors.col(2).asDiagonal() * by_tangent[2];
   return result;
 }
 
-Eigen::MatrixX3d ContactPlace::by_node(Eigen::Index row) const {
+Eigen::MatrixX3d ContactEvaluation::by_node(Eigen::Index row) const {
   Eigen::MatrixX3d result(by_tangent[0].rows(), 3);
   result << by_tangent[0].col(row), by_tangent[1].col(row), by_tangent[2].col(row);
   return result;
 }
 
-void ContactPlace::add(const Eigen::Ref<const Eigen::VectorXd>& multipliers,
-                       Eigen::MatrixX3d& carried) const {
+void ContactEvaluation::add(const Eigen::Ref<const Eigen::VectorXd>& multipliers,
+                            Eigen::MatrixX3d& carried) const {
   for (std::size_t axis = 0; axis < 3; ++axis) {
     carried.col(static_cast<Eigen::Index>(axis)).noalias() += by_tangent[axis] * multipliers;
   }
@@ -78,13 +78,14 @@ ContactForce force_of_series(const ContactSeries& rows, const Eigen::VectorXd& m
   for (std::size_t i = 0; i < rows.slopes.size(); ++i) {
     const ContactSeries::Slope& slope = rows.slopes[i];
     const bool is_short = slope.length < short_part;
-    const Eigen::Index known = is_short ? std::min(slope.count, known_of_short) : slope.count;
+    const Eigen::Index known =
+        is_short ? std::min(slope.count, force_terms_of_short_part) : slope.count;
     const Eigen::VectorXd carried = multipliers.segment(slope.first, known) / slope.length;
     const double here = series(carried, 0);
     if (i == 0) {
       force.begin = before - here;
-    } else if (slope.concentrates) {
-      force.least_inner = std::min(force.least_inner, before - here);
+    } else if (slope.may_concentrate_force) {
+      force.least_inner_force = std::min(force.least_inner_force, before - here);
     }
     force.end = before = series(carried, 1);
     add_pressure(carried.head(is_short ? 2 : (slope.count + 1) / 2), slope.length, i == 0, force);

@@ -10,9 +10,9 @@
 namespace dlo::energy_model {
 
 /// Values of ContactRows at a shape.
-struct ContactPlace {
+struct ContactEvaluation {
   /// Values of the row of a smallest clearance.
-  struct Touch {
+  struct ClearanceMinimum {
     PositionOperator::Point point;  ///< weights of the point
     double at = 0;                  ///< arc length of the point
     obstacle::Gap gap;
@@ -22,7 +22,7 @@ struct ContactPlace {
   Eigen::VectorXd residual;  ///< residuals of all rows
   /// Derivatives of the rows by the tangents: a matrix for each axis, nodes x rows.
   std::array<Eigen::MatrixXd, 3> by_tangent;
-  std::vector<Touch> touches;
+  std::vector<ClearanceMinimum> clearance_minima;
   /// Clearances of points from bodies other than half-spaces, a list for each contact with one.
   std::vector<std::vector<obstacle::Gap>> gaps;
 
@@ -52,7 +52,7 @@ struct ContactForce {
   double largest_pressure = 0;
   /// Smallest concentrated force inside the part, at loads, grips and section changes. Jumps
   /// between the series of two elements elsewhere are truncation errors and do not count.
-  double least_inner = 0;
+  double least_inner_force = 0;
   /// Force, away from the obstacle, that the multipliers also exert on a grip at the begin or the
   /// end of the part. It is included in `moment`, and belongs to the grip, not to the obstacle.
   double held_begin = 0, held_end = 0;
@@ -64,8 +64,9 @@ struct ContactForce {
 struct ContactSeries {
   struct Slope {
     Eigen::Index first = 0, count = 0;
-    double length = 0;          ///< length of the element
-    bool concentrates = false;  ///< whether a load, a section change or a grip is at its begin
+    double length = 0;  ///< length of the element
+    bool may_concentrate_force =
+        false;  ///< whether a load, a section change or a grip is at its begin
   };
   Eigen::Index clearance = -1;
   std::vector<Slope> slopes;

@@ -9,17 +9,16 @@
 namespace dlo::energy_model {
 namespace {
 
-constexpr Eigen::Index most_of_short = 8;  // moments of the slope on a short part
+constexpr Eigen::Index slope_moments_of_short_part = 8;  // moments of the slope on a short part
 
 /// Whether a grip, a load or a section change is at `at`, which could cause a concentrated force.
 bool may_concentrate(const Span& span, double at) {
-  const auto is_there = [at](double other) { return std::abs(at - other) < closest_cuts; };
+  const auto is_at = [at](double other) { return std::abs(at - other) < closest_cuts; };
   return is_held(span, at) ||
          std::any_of(span.loads.begin(), span.loads.end(),
-                     [&](const Span::Load& load) { return is_there(load.at); }) ||
-         std::any_of(span.parts.begin(), span.parts.end(), [&](const Span::Part& part) {
-           return is_there(part.begin) || is_there(part.end);
-         });
+                     [&](const Span::Load& load) { return is_at(load.at); }) ||
+         std::any_of(span.parts.begin(), span.parts.end(),
+                     [&](const Span::Part& part) { return is_at(part.begin) || is_at(part.end); });
 }
 
 /// Returns the forces on points times the second derivatives of their gaps by two coordinates.
@@ -35,7 +34,7 @@ Eigen::VectorXd stiffness(const Eigen::VectorXd& forces, const std::vector<obsta
 
 }  // namespace
 
-Eigen::VectorXd ContactRows::Curved::forces(
+Eigen::VectorXd ContactRows::CurvedContact::forces(
     const Eigen::Ref<const Eigen::VectorXd>& multipliers) const {
   return weights * multipliers.segment(first, weights.cols());
 }
@@ -51,60 +50,60 @@ Eigen::Index ContactRows::add_row() {
   return row;
 }
 
-void ContactRows::add_curved(Curved curved, Eigen::Index rows) {
+void ContactRows::add_curved(CurvedContact curved, Eigen::Index rows) {
   curved.first = linear_.cols();
   for (Eigen::Index k = 0; k < rows; ++k) (void)add_row();
   curved_.push_back(std::move(curved));
 }
 
 void ContactRows::add_clearance(const Span& span, std::size_t contact,
-                                const std::vector<Piece>& pieces) {
+                                const std::vector<Element>& elements) {
   const Span::Contact& own = span.contacts[contact];
   contacts_[contact].clearance = linear_.cols();
-  const Eigen::Index piece = pieces_before(pieces, own.begin);
-  if (!own.lies() && own.slides && piece > 0 && piece < std::ssize(pieces)) {
-    Touch touch;
+  const Eigen::Index element = elements_before(elements, own.begin);
+  if (!own.lies() && own.slides && element > 0 && element < std::ssize(elements)) {
+    ClearanceMinimum touch;
     touch.contact = contact;
     touch.body = own.obstacle.body;
     touch.row = add_row();
     touch.at = own.begin;
-    touch.before = piece - 1;
+    touch.before = element - 1;
     // The search covers half of each adjacent element.
-    touch.low = own.begin - pieces[static_cast<std::size_t>(piece) - 1].length / 2;
-    touch.high = own.begin + pieces[static_cast<std::size_t>(piece)].length / 2;
-    touches_.push_back(std::move(touch));
+    touch.low = own.begin - elements[static_cast<std::size_t>(element) - 1].length / 2;
+    touch.high = own.begin + elements[static_cast<std::size_t>(element)].length / 2;
+    clearance_minima_.push_back(std::move(touch));
   } else if (own.obstacle.body.is_half_space()) {
     const Eigen::Index row = add_row();
-    linear_.col(row) = reach_.begin(piece);
+    linear_.col(row) = reach_.begin(element);
     normal_.col(row) = own.obstacle.body.normal();
     offset_[row] = own.obstacle.body.clearance(Eigen::Vector3d::Zero());
   } else {
-    Curved curved;
+    CurvedContact curved;
     curved.contact = contact;
     curved.body = own.obstacle.body;
-    curved.reach = reach_.at_begin(piece);
+    curved.reach = reach_.at_begin(element);
     curved.weights.setOnes(1, 1);
     add_curved(std::move(curved), 1);
   }
 }
 
 void ContactRows::add_slopes(const Span& span, std::size_t contact,
-                             const std::vector<Piece>& pieces, Eigen::Index degrees,
+                             const std::vector<Element>& elements, Eigen::Index degrees,
                              Eigen::Index terms, const LegendreTable& table) {
   const Span::Contact& own = span.contacts[contact];
   const obstacle::Body& body = own.obstacle.body;
   const Eigen::Index Q = table.nodes.size();
-  for (Eigen::Index e = 0; e < std::ssize(pieces); ++e) {
-    const Piece& piece = pieces[static_cast<std::size_t>(e)];
-    const double middle = piece.begin + piece.length / 2;
+  for (Eigen::Index e = 0; e < std::ssize(elements); ++e) {
+    const Element& element = elements[static_cast<std::size_t>(e)];
+    const double middle = element.begin + element.length / 2;
     if (middle < own.begin || middle > own.end) continue;
     const Eigen::Index count =
-        piece.length < short_part ? std::min(degrees, most_of_short) : degrees;
+        element.length < short_part ? std::min(degrees, slope_moments_of_short_part) : degrees;
     ContactSeries::Slope slope;
     slope.first = linear_.cols();
     slope.count = count;
-    slope.length = piece.length;
-    slope.concentrates = may_concentrate(span, piece.begin);
+    slope.length = element.length;
+    slope.may_concentrate_force = may_concentrate(span, element.begin);
     contacts_[contact].slopes.push_back(slope);
     if (body.is_half_space()) {
       for (Eigen::Index k = 0; k < count; ++k) {
@@ -113,7 +112,7 @@ void ContactRows::add_slopes(const Span& span, std::size_t contact,
         normal_.col(row) = body.normal();
       }
     } else {
-      Curved curved;
+      CurvedContact curved;
       curved.contact = contact;
       curved.body = body;
       curved.reach = reach_.along(e);
@@ -128,30 +127,30 @@ void ContactRows::add_slopes(const Span& span, std::size_t contact,
         legendre_slopes(table.nodes[q], values);
         curved.weights.row(q + 1) = -table.weights[q] * values;
       }
-      curved.weights /= piece.length;
+      curved.weights /= element.length;
       add_curved(std::move(curved), count);
     }
     degrees = terms;
   }
 }
 
-void ContactRows::reset(const Span& span, const std::vector<Piece>& pieces, int terms,
+void ContactRows::reset(const Span& span, const std::vector<Element>& elements, int terms,
                         const LegendreTable& table) {
   contacts_.assign(span.contacts.size(), {});
   curved_.clear();
-  touches_.clear();
+  clearance_minima_.clear();
   normals_.clear();
-  linear_.resize(std::ssize(pieces) * table.nodes.size(), 0);
+  linear_.resize(std::ssize(elements) * table.nodes.size(), 0);
   normal_.resize(3, 0);
   offset_.resize(0);
-  if (!span.contacts.empty()) reach_ = PositionOperator(span, pieces, table);
+  if (!span.contacts.empty()) reach_ = PositionOperator(span, elements, table);
   for (std::size_t i = 0; i < span.contacts.size(); ++i) {
     const Span::Contact& contact = span.contacts[i];
     const obstacle::Body& body = contact.obstacle.body;
     normals_.emplace_back(body.is_half_space() ? body.normal() : Eigen::Vector3d::Zero());
     const HeldBy held = span.held_within(contact.begin, contact.end, closest_cuts);
     if (held == HeldBy::nothing) {
-      add_clearance(span, i, pieces);
+      add_clearance(span, i, elements);
     } else {
       contacts_[i].held_at_begin = is_held(span, contact.begin);
       contacts_[i].held_at_end = is_held(span, contact.end);
@@ -160,16 +159,16 @@ void ContactRows::reset(const Span& span, const std::vector<Piece>& pieces, int 
     // The slope is not prescribed unless a clamp holds the contact; it then has one more unknown
     // than its curvature.
     const Eigen::Index degrees = held == HeldBy::clamp ? terms : terms + 1;
-    add_slopes(span, i, pieces, degrees, terms, table);
+    add_slopes(span, i, elements, degrees, terms, table);
   }
 }
 
-void ContactRows::resize(ContactPlace& place) const {
+void ContactRows::resize(ContactEvaluation& place) const {
   for (std::size_t axis = 0; axis < 3; ++axis) {
     place.by_tangent[axis] = linear_ * normal_.row(static_cast<Eigen::Index>(axis)).asDiagonal();
   }
   place.residual.setZero(count());
-  place.touches.resize(touches_.size());
+  place.clearance_minima.resize(clearance_minima_.size());
   place.gaps.resize(curved_.size());
   for (std::size_t i = 0; i < curved_.size(); ++i) {
     place.gaps[i].resize(static_cast<std::size_t>(curved_[i].reach.points()));
@@ -178,15 +177,15 @@ void ContactRows::resize(ContactPlace& place) const {
 
 /// Finds the first minimum of the clearance, starting from touch.at, on the side to which the
 /// clearance decreases.
-ContactPlace::Touch ContactRows::least_clearance(const Eigen::MatrixX3d& tangents,
-                                                 const Touch& touch) const {
+ContactEvaluation::ClearanceMinimum ContactRows::least_clearance(
+    const Eigen::MatrixX3d& tangents, const ClearanceMinimum& touch) const {
   constexpr double closest = 1e-14;
   constexpr int strides = 8;
   constexpr int most_steps = 50;
-  ContactPlace::Touch found;
-  const auto look = [&](Eigen::Index piece, double s) {
+  ContactEvaluation::ClearanceMinimum found;
+  const auto evaluate = [&](Eigen::Index element, double s) {
     found.at = s;
-    found.point = reach_.at(piece, s);
+    found.point = reach_.at(element, s);
     found.gap = touch.body.gap(tangents.transpose() * found.point.position);
     found.tangent = tangents.transpose() * found.point.tangent;
     found.rate = found.gap.gradient.dot(tangents.transpose() * found.point.curvature) +
@@ -195,45 +194,45 @@ ContactPlace::Touch ContactRows::least_clearance(const Eigen::MatrixX3d& tangent
   };
   // Search in the direction in which the clearance decreases.
   double sense = -1;
-  double slope = -look(touch.before, touch.at);
-  Eigen::Index piece = touch.before;
+  double slope = -evaluate(touch.before, touch.at);
+  Eigen::Index element = touch.before;
   if (!(slope < 0)) {
     sense = 1;
-    slope = std::min(look(++piece, touch.at), 0.0);
+    slope = std::min(evaluate(++element, touch.at), 0.0);
   }
-  const double room = std::abs((sense < 0 ? touch.low : touch.high) - touch.at);
+  const double largest_distance = std::abs((sense < 0 ? touch.low : touch.high) - touch.at);
   double low = 0;  // distances from touch.at; the clearance decreases at `low` and increases at
                    // `high`
   double high = 0;
-  double way = 0;
+  double distance = 0;
   for (int step = 0; step < most_steps; ++step) {
-    const double newton = found.rate > 0 ? way - slope / found.rate : room;
-    if (found.rate > 0 && std::abs(newton - way) < closest) return found;
+    const double newton = found.rate > 0 ? distance - slope / found.rate : largest_distance;
+    if (found.rate > 0 && std::abs(newton - distance) < closest) return found;
     const bool bracketed = high > 0;
     if (bracketed) {
-      way = newton > low && newton < high ? newton : (low + high) / 2;
+      distance = newton > low && newton < high ? newton : (low + high) / 2;
     } else {
-      way = std::min(newton, low + room / strides);
+      distance = std::min(newton, low + largest_distance / strides);
     }
-    if (way > room || (bracketed && high - low < closest)) break;
-    slope = sense * look(piece, touch.at + sense * way);
-    (slope < 0 ? low : high) = way;
+    if (distance > largest_distance || (bracketed && high - low < closest)) break;
+    slope = sense * evaluate(element, touch.at + sense * distance);
+    (slope < 0 ? low : high) = distance;
   }
   found.rate = 0;  // outside the range of the search
   return found;
 }
 
-void ContactRows::look(const Eigen::MatrixX3d& tangents, ContactPlace& place) const {
-  for (std::size_t i = 0; i < touches_.size(); ++i) {
-    place.touches[i] = least_clearance(tangents, touches_[i]);
+void ContactRows::evaluate(const Eigen::MatrixX3d& tangents, ContactEvaluation& place) const {
+  for (std::size_t i = 0; i < clearance_minima_.size(); ++i) {
+    place.clearance_minima[i] = least_clearance(tangents, clearance_minima_[i]);
     for (std::size_t axis = 0; axis < 3; ++axis) {
-      place.by_tangent[axis].col(touches_[i].row) =
-          place.touches[i].gap.gradient[static_cast<Eigen::Index>(axis)] *
-          place.touches[i].point.position;
+      place.by_tangent[axis].col(clearance_minima_[i].row) =
+          place.clearance_minima[i].gap.gradient[static_cast<Eigen::Index>(axis)] *
+          place.clearance_minima[i].point.position;
     }
   }
   for (std::size_t i = 0; i < curved_.size(); ++i) {
-    const Curved& curved = curved_[i];
+    const CurvedContact& curved = curved_[i];
     const Eigen::Index points = curved.reach.points();
     const Eigen::Matrix3Xd positions = curved.reach.positions(tangents);
     Eigen::MatrixX3d gradients(points, 3);
@@ -252,7 +251,7 @@ void ContactRows::look(const Eigen::MatrixX3d& tangents, ContactPlace& place) co
       if (gradients.col(axis).isZero(0)) {
         by_tangent.setZero();
       } else {
-        curved.reach.spread(gradients.col(axis).asDiagonal() * curved.weights, by_tangent);
+        curved.reach.to_nodes(gradients.col(axis).asDiagonal() * curved.weights, by_tangent);
       }
     }
     place.residual.segment(curved.first, rows).noalias() = curved.weights.transpose() * clearances;
@@ -262,27 +261,27 @@ void ContactRows::look(const Eigen::MatrixX3d& tangents, ContactPlace& place) co
     place.residual[row] =
         linear_.col(row).dot(tangents * Eigen::Vector3d(normal_.col(row))) + offset_[row];
   }
-  for (std::size_t i = 0; i < touches_.size(); ++i) {
-    place.residual[touches_[i].row] = place.touches[i].gap.value;
+  for (std::size_t i = 0; i < clearance_minima_.size(); ++i) {
+    place.residual[clearance_minima_[i].row] = place.clearance_minima[i].gap.value;
   }
 }
 
-std::optional<double> ContactRows::touches_at(const ContactPlace& place,
-                                              std::size_t contact) const {
-  for (std::size_t i = 0; i < touches_.size(); ++i) {
-    if (touches_[i].contact == contact) return place.touches[i].at;
+std::optional<double> ContactRows::contact_arc_length(const ContactEvaluation& place,
+                                                      std::size_t contact) const {
+  for (std::size_t i = 0; i < clearance_minima_.size(); ++i) {
+    if (clearance_minima_[i].contact == contact) return place.clearance_minima[i].at;
   }
   return std::nullopt;
 }
 
-void ContactRows::subtract_hessian(const ContactPlace& place,
+void ContactRows::subtract_hessian(const ContactEvaluation& place,
                                    const Eigen::Ref<const Eigen::VectorXd>& multipliers,
                                    const std::array<Eigen::MatrixXd, 3>& tangents,
                                    Eigen::Ref<Eigen::MatrixXd> hessian) const {
   Eigen::MatrixX3d moved(hessian.cols(), 3);
-  for (std::size_t i = 0; i < touches_.size(); ++i) {
-    const ContactPlace::Touch& touch = place.touches[i];
-    const double mu = multipliers[touches_[i].row];
+  for (std::size_t i = 0; i < clearance_minima_.size(); ++i) {
+    const ContactEvaluation::ClearanceMinimum& touch = place.clearance_minima[i];
+    const double mu = multipliers[clearance_minima_[i].row];
     for (std::size_t axis = 0; axis < 3; ++axis) {
       moved.col(static_cast<Eigen::Index>(axis)).noalias() =
           tangents[axis].transpose() * touch.point.position;
@@ -298,12 +297,12 @@ void ContactRows::subtract_hessian(const ContactPlace& place,
     hessian.noalias() += (mu / touch.rate) * turned * turned.transpose();
   }
   for (std::size_t i = 0; i < curved_.size(); ++i) {
-    const Curved& curved = curved_[i];
+    const CurvedContact& curved = curved_[i];
     const Eigen::VectorXd forces = curved.forces(multipliers);
     std::array<Eigen::MatrixXd, 3> points;  // x unknowns
     const std::size_t axes = tangents[2].isZero(0) ? 2 : 3;
     for (std::size_t axis = 0; axis < axes; ++axis) {
-      points[axis] = curved.reach.sums(tangents[axis]);
+      points[axis] = curved.reach.to_points(tangents[axis]);
     }
     for (std::size_t a = 0; a < axes; ++a) {
       Eigen::MatrixXd bent = Eigen::MatrixXd::Zero(points[a].rows(), points[a].cols());
@@ -331,7 +330,7 @@ Eigen::VectorXd ContactRows::prolong(const ContactRows& other,
   return prolonged;
 }
 
-std::vector<ContactForce> ContactRows::forces(const ContactPlace& place,
+std::vector<ContactForce> ContactRows::forces(const ContactEvaluation& place,
                                               const Eigen::MatrixX3d& tangents,
                                               const Eigen::VectorXd& multipliers) const {
   std::vector<ContactForce> result;
@@ -343,12 +342,12 @@ std::vector<ContactForce> ContactRows::forces(const ContactPlace& place,
     place.add(contacts_[i].own(multipliers), carried);
     result.back().moment = moment_about_anchor(tangents, carried);
   }
-  for (std::size_t i = 0; i < touches_.size(); ++i) {
-    result[touches_[i].contact].force =
-        multipliers[touches_[i].row] * place.touches[i].gap.gradient;
+  for (std::size_t i = 0; i < clearance_minima_.size(); ++i) {
+    result[clearance_minima_[i].contact].force =
+        multipliers[clearance_minima_[i].row] * place.clearance_minima[i].gap.gradient;
   }
   for (std::size_t i = 0; i < curved_.size(); ++i) {
-    const Curved& curved = curved_[i];
+    const CurvedContact& curved = curved_[i];
     const Eigen::VectorXd forces = curved.forces(multipliers);
     const ContactSeries& rows = contacts_[curved.contact];
     const bool begins = !rows.slopes.empty() && curved.first == rows.slopes.front().first;

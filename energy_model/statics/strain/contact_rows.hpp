@@ -27,25 +27,25 @@ namespace dlo::energy_model {
 class ContactRows {
  public:
   /// Sets up the rows of a span. @param terms  number of coefficients of an element's strain
-  void reset(const Span& span, const std::vector<Piece>& pieces, int terms,
+  void reset(const Span& span, const std::vector<Element>& elements, int terms,
              const LegendreTable& table);
 
   [[nodiscard]] Eigen::Index count() const { return linear_.cols(); }
   /// Resizes a place.
-  void resize(ContactPlace& place) const;
+  void resize(ContactEvaluation& place) const;
   /// Evaluates the rows at a shape. @param tangents  nodes x 3
-  void look(const Eigen::MatrixX3d& tangents, ContactPlace& place) const;
+  void evaluate(const Eigen::MatrixX3d& tangents, ContactEvaluation& place) const;
 
   /// Returns the arc length of a sliding contact; std::nullopt for other contacts.
-  [[nodiscard]] std::optional<double> touches_at(const ContactPlace& place,
-                                                 std::size_t contact) const;
+  [[nodiscard]] std::optional<double> contact_arc_length(const ContactEvaluation& place,
+                                                         std::size_t contact) const;
   /// Whether rows are nonlinear in the tangents.
-  [[nodiscard]] bool curved() const { return !touches_.empty() || !curved_.empty(); }
+  [[nodiscard]] bool curved() const { return !clearance_minima_.empty() || !curved_.empty(); }
   /// Subtracts the multipliers times the rows' second derivatives from `hessian`, except the part
-  /// with second derivatives of the tangents, which ContactPlace::add() covers.
+  /// with second derivatives of the tangents, which ContactEvaluation::add() covers.
   /// @param tangents  derivatives of the tangents by the unknowns, one matrix per axis, nodes x
   ///   unknowns
-  void subtract_hessian(const ContactPlace& place,
+  void subtract_hessian(const ContactEvaluation& place,
                         const Eigen::Ref<const Eigen::VectorXd>& multipliers,
                         const std::array<Eigen::MatrixXd, 3>& tangents,
                         Eigen::Ref<Eigen::MatrixXd> hessian) const;
@@ -55,25 +55,25 @@ class ContactRows {
                                         const Eigen::VectorXd& multipliers) const;
   /// Returns the force of each of Span::contacts. @param tangents  nodes x 3. @param multipliers
   /// of all rows
-  [[nodiscard]] std::vector<ContactForce> forces(const ContactPlace& place,
+  [[nodiscard]] std::vector<ContactForce> forces(const ContactEvaluation& place,
                                                  const Eigen::MatrixX3d& tangents,
                                                  const Eigen::VectorXd& multipliers) const;
 
  private:
   /// Rows that depend on the clearances of points from a body that is not a half-space.
-  struct Curved {
+  struct CurvedContact {
     std::size_t contact = 0;
     obstacle::Body body;
     Eigen::Index first = 0;   // row
     Eigen::MatrixXd weights;  // rows = weights^T clearances, points x rows
-    PointsReach reach;        // positions of the points
+    PointOperator reach;      // positions of the points
 
     /// Returns the forces on the points from the multipliers of all rows.
     [[nodiscard]] Eigen::VectorXd forces(
         const Eigen::Ref<const Eigen::VectorXd>& multipliers) const;
   };
   /// Row of a smallest clearance.
-  struct Touch {
+  struct ClearanceMinimum {
     std::size_t contact = 0;
     obstacle::Body body;
     Eigen::Index row = 0;
@@ -82,16 +82,16 @@ class ContactRows {
     double low = 0, high = 0;  // bounds of its arc length
   };
   [[nodiscard]] Eigen::Index add_row();
-  void add_clearance(const Span& span, std::size_t contact, const std::vector<Piece>& pieces);
-  void add_slopes(const Span& span, std::size_t contact, const std::vector<Piece>& pieces,
+  void add_clearance(const Span& span, std::size_t contact, const std::vector<Element>& elements);
+  void add_slopes(const Span& span, std::size_t contact, const std::vector<Element>& elements,
                   Eigen::Index degrees, Eigen::Index terms, const LegendreTable& table);
-  void add_curved(Curved curved, Eigen::Index rows);
-  [[nodiscard]] ContactPlace::Touch least_clearance(const Eigen::MatrixX3d& tangents,
-                                                    const Touch& touch) const;
+  void add_curved(CurvedContact curved, Eigen::Index rows);
+  [[nodiscard]] ContactEvaluation::ClearanceMinimum least_clearance(
+      const Eigen::MatrixX3d& tangents, const ClearanceMinimum& touch) const;
 
   std::vector<ContactSeries> contacts_;
-  std::vector<Curved> curved_;
-  std::vector<Touch> touches_;
+  std::vector<CurvedContact> curved_;
+  std::vector<ClearanceMinimum> clearance_minima_;
   std::vector<Eigen::Vector3d> normals_;  // normals of half-spaces, by contact
   PositionOperator reach_;
   // For rows that are linear in the tangents; zero for others.

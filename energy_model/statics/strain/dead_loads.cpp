@@ -8,10 +8,10 @@ namespace {
 /// Returns the energy of the loads' forces, without weight and couples [EI/l].
 double energy_of_forces(const TermSetup& setup, const Eigen::MatrixX3d& tangents) {
   if (setup.span.loads.empty()) return 0;
-  const PositionOperator reach(setup.span, setup.pieces, setup.table);
+  const PositionOperator reach(setup.span, setup.elements, setup.table);
   double energy = 0;
   for (const Span::Load& load : setup.span.loads) {
-    const Eigen::VectorXd at = reach.begin(pieces_before(setup.pieces, load.at));
+    const Eigen::VectorXd at = reach.begin(elements_before(setup.elements, load.at));
     energy -= load.force.dot(tangents.transpose() * at);
   }
   return energy;
@@ -22,11 +22,12 @@ double couple_angle(const TermSetup& setup, const Eigen::VectorXd& x, const Span
   const Span& span = setup.span;
   const double start = span.start_direction ? angle_of(*span.start_direction) : 0;
   const auto angle = [&](double at) {
-    return start + setup.plane.by_unknown_after(pieces_before(setup.pieces, at) - 1).dot(x) +
+    return start +
+           setup.plane.angle_derivatives_after(elements_before(setup.elements, at) - 1).dot(x) +
            (span.natural.empty() ? 0 : span.natural.integral(at).x());
   };
   const double zero = angle(load.zero_at);
-  return angle(load.at) - zero + nearest_turn(zero - load.zero_angle, 0);
+  return angle(load.at) - zero + nearest_equivalent_angle(zero - load.zero_angle, 0);
 }
 
 }  // namespace
@@ -51,7 +52,8 @@ void DeadLoads::reset(const TermSetup& setup) {
   couples_.setZero(setup.plane.by_unknown().cols());
   for (const Span::Load& load : span.loads) {
     couples_ += load.couple *
-                setup.plane.by_unknown_after(pieces_before(setup.pieces, load.at) - 1).transpose();
+                setup.plane.angle_derivatives_after(elements_before(setup.elements, load.at) - 1)
+                    .transpose();
   }
 }
 

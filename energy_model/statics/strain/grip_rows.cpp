@@ -18,63 +18,63 @@ DirectionResidual direction_residual(const Eigen::Vector3d& p, const Eigen::Vect
       4 * n / (d * d * d) * to * to.transpose();
   const Eigen::Matrix3d turn = cross_matrix(p);
   return {2 * n / d, p.cross(gradient),
-          spin_curvature(p, gradient) + turn.transpose() * second * turn};
+          spin_hessian(p, gradient) + turn.transpose() * second * turn};
 }
 
-void GripRows::reset(const Span& span, const std::vector<Piece>& pieces,
+void GripRows::reset(const Span& span, const std::vector<Element>& elements,
                      const LegendreTable& table) {
   axes_ = span.planar ? 2 : 3;
   holds_ = span.holds;
-  reach_.resize(std::ssize(pieces) * table.nodes.size(), std::ssize(holds_));
+  reach_.resize(std::ssize(elements) * table.nodes.size(), std::ssize(holds_));
   reach_signs_.clear();
   directions_.clear();
   if (holds_.empty()) return;
-  const PositionOperator reach(span, pieces, table);
+  const PositionOperator reach(span, elements, table);
   for (std::size_t j = 0; j < holds_.size(); ++j) {
-    reach_.col(static_cast<Eigen::Index>(j)) = reach.begin(pieces_before(pieces, holds_[j].at));
+    reach_.col(static_cast<Eigen::Index>(j)) = reach.begin(elements_before(elements, holds_[j].at));
     reach_signs_.push_back(reach.signs(holds_[j].at));
   }
-  list_directions(span, pieces);
+  list_directions(span, elements);
 }
 
-void GripRows::list_directions(const Span& span, const std::vector<Piece>& pieces) {
-  const auto add = [&](Eigen::Index hold, Eigen::Index piece, const Eigen::Vector3d& to) {
+void GripRows::list_directions(const Span& span, const std::vector<Element>& elements) {
+  const auto add = [&](Eigen::Index hold, Eigen::Index element, const Eigen::Vector3d& to) {
     // A planar shape bends about d1.
     const Eigen::Matrix3d frame = frame_along(to, Span::d1(to));
-    directions_.push_back({hold, piece, to, frame.col(0)});
-    if (!span.planar) directions_.push_back({hold, piece, to, frame.col(1)});
+    directions_.push_back({hold, element, to, frame.col(0)});
+    if (!span.planar) directions_.push_back({hold, element, to, frame.col(1)});
   };
   for (std::size_t j = 0; j < holds_.size(); ++j) {
     if (!holds_[j].direction) continue;
-    add(static_cast<Eigen::Index>(j), pieces_before(pieces, holds_[j].at) - 1,
+    add(static_cast<Eigen::Index>(j), elements_before(elements, holds_[j].at) - 1,
         *holds_[j].direction);
   }
   if (!span.end_direction) return;
   const Eigen::Index hold = std::ssize(holds_) - 1;
-  const Eigen::Index piece = std::ssize(pieces) - 1;
-  add(hold, piece, *span.end_direction);
+  const Eigen::Index element = std::ssize(elements) - 1;
+  add(hold, element, *span.end_direction);
   if (!span.twist) return;
-  directions_.push_back({.hold = hold, .piece = piece, .of_d1 = true});
+  directions_.push_back({.hold = hold, .element = element, .of_d1 = true});
   turn_end_clamp(*span.end_direction, span.twist->end_d1);
 }
 
 void GripRows::reset_in_plane(const PlanarFrames& frames) {
-  held_angle_.resize(directions(), frames.by_unknown().cols());
+  direction_derivatives_.resize(directions(), frames.by_unknown().cols());
   for (Eigen::Index i = 0; i < directions(); ++i) {
     DirectionRow& row = directions_[static_cast<std::size_t>(i)];
-    held_angle_.row(i) = frames.by_unknown_after(row.piece);
-    row.angle = frames.angle_towards(row.to, row.piece);
+    direction_derivatives_.row(i) = frames.angle_derivatives_after(row.element);
+    row.angle = frames.angle_towards(row.to, row.element);
   }
 }
 
 void GripRows::turn_end_clamp(const Eigen::Vector3d& direction, const Eigen::Vector3d& d1) {
-  const Eigen::Matrix3d held = frame_along(direction, d1);
-  directions_.back().to = held.col(0);
-  directions_.back().across = held.col(1);
+  const Eigen::Matrix3d frame = frame_along(direction, d1);
+  directions_.back().to = frame.col(0);
+  directions_.back().across = frame.col(1);
 }
 
 DirectionResidual GripRows::residual_of(const DirectionRow& row, const SpatialPoint& at) {
-  const Eigen::Matrix3d frame = at.frames.frame_after(at.state, row.piece);
+  const Eigen::Matrix3d frame = at.frames.frame_after(at.state, row.element);
   if (!row.of_d1) return direction_residual(frame.col(2), row.to, row.across);
   const Eigen::Vector3d d1 = std::cos(at.psi) * frame.col(0) + std::sin(at.psi) * frame.col(1);
   return direction_residual(d1, row.to, row.across);
@@ -92,11 +92,11 @@ void GripRows::constrain(const PlanarPoint& at, Eigen::Ref<Eigen::VectorXd> resi
     }
   }
   if (directions_.empty()) return;
-  jacobian.bottomRows(directions()) = held_angle_;
-  residual.tail(directions()).noalias() = held_angle_ * at.x;
+  jacobian.bottomRows(directions()) = direction_derivatives_;
+  residual.tail(directions()).noalias() = direction_derivatives_ * at.x;
   row = residual.size() - directions();
-  for (const DirectionRow& held : directions_) {
-    residual[row++] += at.frames.start_theta() - held.angle;
+  for (const DirectionRow& direction_row : directions_) {
+    residual[row++] += at.frames.start_theta() - direction_row.angle;
   }
 }
 
@@ -113,14 +113,15 @@ void GripRows::constrain(const SpatialPoint& at, Eigen::Ref<Eigen::VectorXd> res
   }
   if (!directions_.empty()) at.frames.end_rotation_jacobian(at.state);
   Eigen::Index row = residual.size() - directions();
-  for (const DirectionRow& held : directions_) {
-    const DirectionResidual own = residual_of(held, at);
+  for (const DirectionRow& direction_row : directions_) {
+    const DirectionResidual own = residual_of(direction_row, at);
     residual[row] = own.value;
-    at.frames.couple_adjoint(held.piece, own.couple, at.state, jacobian.row(row).head(strains));
+    at.frames.couple_adjoint(direction_row.element, own.couple, at.state,
+                             jacobian.row(row).head(strains));
     // Twist rotates d1 about the tangent.
     if (at.twist_root > 0) {
       jacobian(row, strains) =
-          held.of_d1 ? own.couple.dot(at.state.end_frame().col(2)) / at.twist_root : 0;
+          direction_row.of_d1 ? own.couple.dot(at.state.end_frame().col(2)) / at.twist_root : 0;
     }
     ++row;
   }
@@ -135,18 +136,18 @@ void GripRows::add_forces(const Eigen::Ref<const Eigen::VectorXd>& multipliers,
   }
 }
 
-void GripRows::turn_derivatives(const SpatialPoint& at,
-                                const Eigen::Ref<const Eigen::VectorXd>& multipliers,
-                                std::vector<Eigen::Vector3d>& couples,
-                                std::vector<Eigen::Matrix3d>& curvatures) const {
+void GripRows::rotation_derivatives(const SpatialPoint& at,
+                                    const Eigen::Ref<const Eigen::VectorXd>& multipliers,
+                                    std::vector<Eigen::Vector3d>& couples,
+                                    std::vector<Eigen::Matrix3d>& curvatures) const {
   for (Eigen::Vector3d& couple : couples) couple.setZero();
   for (Eigen::Matrix3d& curvature : curvatures) curvature.setZero();
   Eigen::Index row = multipliers.size() - directions();
-  for (const DirectionRow& held : directions_) {
+  for (const DirectionRow& direction_row : directions_) {
     const double mu = multipliers[row++];
-    const DirectionResidual own = residual_of(held, at);
-    couples[static_cast<std::size_t>(held.piece)] -= mu * own.couple;
-    curvatures[static_cast<std::size_t>(held.piece)] -= mu * own.curvature;
+    const DirectionResidual own = residual_of(direction_row, at);
+    couples[static_cast<std::size_t>(direction_row.element)] -= mu * own.couple;
+    curvatures[static_cast<std::size_t>(direction_row.element)] -= mu * own.curvature;
   }
 }
 
@@ -169,7 +170,7 @@ void GripRows::tilt_jacobian(const PlanarFrames& frames, Eigen::MatrixXd& jacobi
   const Eigen::MatrixXd& angle = frames.by_unknown();
   jacobian.resize(reach_.cols() + directions(), angle.cols());
   jacobian.topRows(reach_.cols()).noalias() = reach_.transpose() * angle;
-  jacobian.bottomRows(directions()) = held_angle_;
+  jacobian.bottomRows(directions()) = direction_derivatives_;
 }
 
 double GripRows::gap(const Eigen::Matrix3Xd& tangents) const {
@@ -184,7 +185,7 @@ double GripRows::gap(const Eigen::Matrix3Xd& tangents) const {
 void GripRows::unwrap(const Eigen::Ref<const Eigen::VectorXd>& x, double start_theta) {
   for (Eigen::Index i = 0; i < directions(); ++i) {
     double& angle = directions_[static_cast<std::size_t>(i)].angle;
-    angle = nearest_turn(angle, start_theta + held_angle_.row(i).dot(x));
+    angle = nearest_equivalent_angle(angle, start_theta + direction_derivatives_.row(i).dot(x));
   }
 }
 
@@ -192,13 +193,13 @@ Eigen::Vector3d GripRows::torque(Eigen::Index hold, const Eigen::VectorXd& multi
                                  const SpatialPoint* at) const {
   Eigen::Vector3d torque = Eigen::Vector3d::Zero();
   Eigen::Index row = multipliers.size() - directions();
-  for (const DirectionRow& held : directions_) {
+  for (const DirectionRow& direction_row : directions_) {
     const double mu = multipliers[row++];
-    if (held.hold != hold) continue;
+    if (direction_row.hold != hold) continue;
     if (at == nullptr) {
       torque.z() += mu;
     } else {
-      torque += mu * residual_of(held, *at).couple;
+      torque += mu * residual_of(direction_row, *at).couple;
     }
   }
   return torque;

@@ -54,7 +54,7 @@ struct SpatialPoint {
 /// last ones; rows of contacts may stand between them.
 class GripRows {
  public:
-  void reset(const Span& span, const std::vector<Piece>& pieces, const LegendreTable& table);
+  void reset(const Span& span, const std::vector<Element>& elements, const LegendreTable& table);
   /// Adds the data of a span in its plane; call after reset().
   void reset_in_plane(const PlanarFrames& frames);
 
@@ -71,10 +71,10 @@ class GripRows {
                   Eigen::MatrixX3d& carried) const;
   /// Computes, for each element, first and second derivatives of -mu times the residuals of
   /// directions by rotations of the frame at its end.
-  void turn_derivatives(const SpatialPoint& at,
-                        const Eigen::Ref<const Eigen::VectorXd>& multipliers,
-                        std::vector<Eigen::Vector3d>& couples,
-                        std::vector<Eigen::Matrix3d>& curvatures) const;
+  void rotation_derivatives(const SpatialPoint& at,
+                            const Eigen::Ref<const Eigen::VectorXd>& multipliers,
+                            std::vector<Eigen::Vector3d>& couples,
+                            std::vector<Eigen::Matrix3d>& curvatures) const;
   /// Adds the last row and column of the Hessian: second derivatives by the twist psi of `factor`
   /// times the row of d1. Call it after FrameHessian::add(), which computes the rotations of the
   /// end.
@@ -98,14 +98,14 @@ class GripRows {
  private:
   /// One component of the constraint on a director that a clamp prescribes.
   struct DirectionRow {
-    Eigen::Index hold;   // in holds_
-    Eigen::Index piece;  // the element at whose end the clamp is
+    Eigen::Index hold;     // in holds_
+    Eigen::Index element;  // the element at whose end the clamp is
     Eigen::Vector3d to = Eigen::Vector3d::Zero();
     Eigen::Vector3d across = Eigen::Vector3d::Zero();
     bool of_d1 = false;  // constrains d1 instead of the tangent
     double angle = 0;    // in the plane: PlanarFrames::angle_towards(), with whole turns
   };
-  void list_directions(const Span& span, const std::vector<Piece>& pieces);
+  void list_directions(const Span& span, const std::vector<Element>& elements);
   [[nodiscard]] static DirectionResidual residual_of(const DirectionRow& row,
                                                      const SpatialPoint& at);
 
@@ -114,7 +114,8 @@ class GripRows {
   Eigen::MatrixXd reach_;  // per grip: quadrature weight of the node times -1, 0, 1
   std::vector<std::vector<double>> reach_signs_;  // -1, 0, 1 by grip and element
   std::vector<DirectionRow> directions_;
-  Eigen::MatrixXd held_angle_;  // in the plane: derivatives of the direction rows by the unknowns
+  Eigen::MatrixXd
+      direction_derivatives_;  // in the plane: derivatives of the direction rows by the unknowns
 };
 
 }  // namespace dlo::energy_model

@@ -28,17 +28,18 @@ class SoftContact : public Term {
 
  private:
   /// A node within an obstacle.
-  struct Pressed {
+  struct PenetratingNode {
     std::size_t obstacle = 0;
     Eigen::Index node = 0;
     obstacle::Gap gap;
     double stiffness = 0;  // stiffness of the obstacle times the node's quadrature weight
 
     [[nodiscard]] double energy() const { return stiffness * gap.value * gap.value / 2; }
-    [[nodiscard]] Eigen::Vector3d push() const { return -stiffness * gap.value * gap.gradient; }
+    [[nodiscard]] Eigen::Vector3d force() const { return -stiffness * gap.value * gap.gradient; }
   };
-  [[nodiscard]] std::vector<Pressed> pressed(const Eigen::MatrixX3d& tangents) const;
-  [[nodiscard]] Eigen::Matrix3d spring(const Pressed& at) const;
+  [[nodiscard]] std::vector<PenetratingNode> penetrating_nodes(
+      const Eigen::MatrixX3d& tangents) const;
+  [[nodiscard]] Eigen::Matrix3d energy_hessian(const PenetratingNode& at) const;
 
   std::vector<Span::SoftObstacle> obstacles_;
   bool planar_ = true;

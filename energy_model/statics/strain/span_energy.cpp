@@ -32,30 +32,30 @@ void for_each(Terms& terms, const Function& function) {
 
 void SpanEnergy::reset(const Span& span, int terms) {
   span_ = span;
-  pieces_ = pieces_of(span);
+  elements_ = elements_of(span);
   table_ = span.planar ? &legendre_table(terms) : &director_table(terms);
-  tabulate_nodes(pieces_, *table_, s_, weights_);
-  grips_.reset(span, pieces_, *table_);
+  tabulate_nodes(elements_, *table_, s_, weights_);
+  grips_.reset(span, elements_, *table_);
   if (span.twist) twist_root_ = std::sqrt(span.twist->stiffness / span.length);
-  contacts_.reset(span, pieces_, terms, *table_);
-  unknowns_ = {1, std::ssize(pieces_), terms, span.start_direction ? 0 : 1, false};
+  contacts_.reset(span, elements_, terms, *table_);
+  unknowns_ = {1, std::ssize(elements_), terms, span.start_direction ? 0 : 1, false};
   if (span.planar) {
     std::optional<double> start_theta;
     if (span.start_direction) start_theta = angle_of(*span.start_direction);
-    plane_.reset(pieces_, terms, start_theta, span.natural);
+    plane_.reset(elements_, terms, start_theta, span.natural);
     grips_.reset_in_plane(plane_);
   } else {
     const Eigen::Vector3d tangent = first_tangent(span);
     start_frame_ = frame_along(tangent, span.first_d1(tangent));
-    frames_.reset(pieces_, terms, start_frame_, !span.start_direction, span.natural);
+    frames_.reset(elements_, terms, start_frame_, !span.start_direction, span.natural);
     unknowns_.fields = frames_.fields();
     unknowns_.has_psi = span.twist && !span.has_material_directors();
   }
   for_each(terms_, [this](auto& term) { term.reset(setup()); });
-  revise();
+  update_revision();
 }
 
-void SpanEnergy::revise() {
+void SpanEnergy::update_revision() {
   static std::atomic<long> last = 0;
   revision_ = ++last;
 }
@@ -70,8 +70,8 @@ void SpanEnergy::resize(SpanPoint& point) const {
     plane_.resize(point.plane);
   } else {
     frames_.resize(point.frames);
-    point.couples.resize(pieces_.size());
-    point.curvatures.resize(pieces_.size());
+    point.couples.resize(elements_.size());
+    point.curvatures.resize(elements_.size());
   }
   contacts_.resize(point.contacts);
   point.revision = revision_;
@@ -80,7 +80,7 @@ void SpanEnergy::resize(SpanPoint& point) const {
 void SpanEnergy::turn_end_clamp(const Eigen::Vector3d& end_d1) {
   span_.twist->end_d1 = end_d1;
   grips_.turn_end_clamp(*span_.end_direction, end_d1);
-  revise();
+  update_revision();
 }
 
 void SpanEnergy::evaluate(const Eigen::Ref<const Eigen::VectorXd>& x, SpanPoint& point) const {
@@ -110,8 +110,8 @@ double SpanEnergy::twist(const Eigen::VectorXd& x) const {
   if (has_psi()) return x[x.size() - 1] / twist_root_;
   if (span_.planar || !span_.has_material_directors()) return 0;
   double angle = span_.natural.integral(span_.length).z();
-  for (Eigen::Index e = 0; e < pieces(); ++e) {
-    angle += piece(e).angle(2) * x[unknowns_.first(2, e)];
+  for (Eigen::Index e = 0; e < elements(); ++e) {
+    angle += element(e).angle(2) * x[unknowns_.first(2, e)];
   }
   return angle;
 }
@@ -131,10 +131,10 @@ Eigen::VectorXd SpanEnergy::with_twist(Eigen::VectorXd x, double angle) const {
   // A torque that is constant along the span changes the strains by its quotient with the
   // stiffness.
   double compliance = 0;
-  for (const Piece& piece : pieces_) compliance += piece.length / piece.stiffness[2];
+  for (const Element& element : elements_) compliance += element.length / element.stiffness[2];
   const double torque = (angle - twist(x)) / compliance;
-  for (Eigen::Index e = 0; e < pieces(); ++e) {
-    x[unknowns_.first(2, e)] += torque * piece(e).angle(2);
+  for (Eigen::Index e = 0; e < elements(); ++e) {
+    x[unknowns_.first(2, e)] += torque * element(e).angle(2);
   }
   return x;
 }
@@ -143,7 +143,7 @@ void SpanEnergy::constrain(SpanPoint& point) const {
   const Eigen::Index count = contacts_.count();
   const Eigen::Index first = grips_.positions();
   if (count > 0) {
-    contacts_.look(point.t, point.contacts);
+    contacts_.evaluate(point.t, point.contacts);
     point.residual.segment(first, count) = point.contacts.residual;
   }
   if (span_.planar) {
@@ -164,7 +164,8 @@ void SpanEnergy::constrain(SpanPoint& point) const {
 
 /// Computes at.carried: quadrature weight of the node times the force that the rod carries there,
 /// including the forces of grips and contacts.
-void SpanEnergy::carry(SpanPoint& at, const Eigen::Ref<const Eigen::VectorXd>& multipliers) const {
+void SpanEnergy::compute_carried_force(SpanPoint& at,
+                                       const Eigen::Ref<const Eigen::VectorXd>& multipliers) const {
   at.carried = at.force;
   grips_.add_forces(multipliers, at.carried);
   if (contacts_.count() > 0) at.contacts.add(contact_multipliers(multipliers), at.carried);
@@ -172,7 +173,7 @@ void SpanEnergy::carry(SpanPoint& at, const Eigen::Ref<const Eigen::VectorXd>& m
 
 void SpanEnergy::hessian(SpanPoint& at, const Eigen::Ref<const Eigen::VectorXd>& multipliers,
                          Eigen::MatrixXd& result) const {
-  carry(at, multipliers);
+  compute_carried_force(at, multipliers);
   result.setIdentity(size(), size());
   auto stored = result.diagonal();
   unknowns_.clear_start(stored);
@@ -182,7 +183,7 @@ void SpanEnergy::hessian(SpanPoint& at, const Eigen::Ref<const Eigen::VectorXd>&
   } else {
     at.carried = -at.carried;
     const SpatialPoint here = in_space(at);
-    grips_.turn_derivatives(here, multipliers, at.couples, at.curvatures);
+    grips_.rotation_derivatives(here, multipliers, at.couples, at.curvatures);
     at.frame_hessian.add(frames_, {&at.carried, at.couples}, at.curvatures, at.frames, result);
     if (has_psi()) grips_.add_twist_hessian(here, -multipliers[constraints() - 1], result);
   }
@@ -212,15 +213,15 @@ std::array<Eigen::MatrixXd, 3> SpanEnergy::tangent_jacobian(SpanPoint& at) const
 
 /// Computes at.along: the quadrature weight of the node, multiplied by (n.t - B kappa^2). This is
 /// the coefficient of a squared tilt out of the plane in the second variation.
-void SpanEnergy::carry_tilts(SpanPoint& at,
-                             const Eigen::Ref<const Eigen::VectorXd>& multipliers) const {
-  carry(at, multipliers);
+void SpanEnergy::compute_tilt_coefficients(
+    SpanPoint& at, const Eigen::Ref<const Eigen::VectorXd>& multipliers) const {
+  compute_carried_force(at, multipliers);
   dot_in_plane(at.carried, at.t, at.along);
   plane_.subtract_bending(at.x, weights_, at.plane, at.along);
 }
 
 bool SpanEnergy::resists_out_of_plane(SpanPoint& at) const {
-  carry_tilts(at, Eigen::VectorXd());
+  compute_tilt_coefficients(at, Eigen::VectorXd());
   // int beta'^2 >= (pi / 2L)^2 int beta^2, as a clamp fixes beta at one end.
   const double bending = std::numbers::pi * std::numbers::pi / (4 * span_.length * span_.length);
   if (((at.along.array() + bending * weights_.array()) > 0).all()) return true;
@@ -231,7 +232,7 @@ bool SpanEnergy::resists_out_of_plane(SpanPoint& at) const {
 
 void SpanEnergy::tilt_hessian(SpanPoint& at, const Eigen::Ref<const Eigen::VectorXd>& multipliers,
                               Eigen::MatrixXd& hessian, Eigen::MatrixXd& jacobian) const {
-  carry_tilts(at, multipliers);
+  compute_tilt_coefficients(at, multipliers);
   hessian.setIdentity(size(), size());
   auto stored = hessian.diagonal();
   unknowns_.clear_start(stored);
@@ -276,7 +277,7 @@ Eigen::VectorXd SpanEnergy::fit(const StartShape& shape, int most_steps) {
 /// Shifts the clamps' angles by multiples of 2 pi to the winding of these unknowns, in the plane.
 void SpanEnergy::unwrap(const Eigen::Ref<const Eigen::VectorXd>& x) {
   grips_.unwrap(x, plane_.start_theta());
-  revise();
+  update_revision();
 }
 
 Eigen::VectorXd SpanEnergy::prolong(const SpanEnergy& other, const Eigen::VectorXd& x) {
@@ -284,7 +285,7 @@ Eigen::VectorXd SpanEnergy::prolong(const SpanEnergy& other, const Eigen::Vector
   Eigen::VectorXd prolonged = unknowns_.prolong(other.unknowns_, x);
   if (span_.planar) unwrap(prolonged);
   if (unknowns_.free_start == 1 && other.span_.planar && !span_.planar) {
-    prolonged[0] = nearest_turn(x[0] - angle_of(start_frame_.col(2)), 0);
+    prolonged[0] = nearest_equivalent_angle(x[0] - angle_of(start_frame_.col(2)), 0);
   }
   return prolonged;
 }
@@ -302,9 +303,9 @@ Eigen::VectorXd SpanEnergy::prolong_multipliers(const SpanEnergy& other,
   return prolonged;
 }
 
-double SpanEnergy::longest_piece() const {
+double SpanEnergy::longest_element() const {
   double longest = 0;
-  for (const Piece& piece : pieces_) longest = std::max(longest, piece.length);
+  for (const Element& element : elements_) longest = std::max(longest, element.length);
   return longest;
 }
 
@@ -312,9 +313,9 @@ double SpanEnergy::truncation(const Eigen::VectorXd& x, int terms) const {
   const Eigen::Index last = std::min(terms, 2);
   double largest = 0;
   for (Eigen::Index field = 0; field < unknowns_.fields; ++field) {
-    for (Eigen::Index e = 0; e < pieces(); ++e) {
+    for (Eigen::Index e = 0; e < elements(); ++e) {
       const auto coefficients = x.segment(unknowns_.first(field, e) + terms - last, last);
-      largest = std::max(largest, piece(e).angle(field) * coefficients.cwiseAbs().maxCoeff());
+      largest = std::max(largest, element(e).angle(field) * coefficients.cwiseAbs().maxCoeff());
     }
   }
   return largest;
@@ -325,7 +326,7 @@ SpanShape SpanEnergy::shape(const Eigen::VectorXd& x) const {
   shape.terms = terms();
   shape.planar = span_.planar;
   shape.anchor = span_.anchor;
-  shape.pieces = pieces_;
+  shape.elements = elements_;
   const Eigen::Index free_start = unknowns_.free_start;
   if (span_.planar) {
     shape.start_theta = plane_.start_theta() + (free_start == 1 ? x[0] : 0);
@@ -371,7 +372,7 @@ Eigen::Vector3d SpanEnergy::hold_torque(SpanPoint& at, Eigen::Index hold,
 
 Eigen::Vector3d SpanEnergy::start_torque(SpanPoint& at, const Eigen::VectorXd& multipliers) const {
   if (!span_.start_direction) return Eigen::Vector3d::Zero();
-  carry(at, multipliers);
+  compute_carried_force(at, multipliers);
   Eigen::Vector3d moment = moment_about_anchor(at.t, at.carried);
   if (span_.planar) moment.head<2>().setZero();
   for_each(terms_, [&](const auto& term) { term.add_couples(moment); });

@@ -51,8 +51,8 @@ class SpanEnergy {
     return constraints() - grips_.directions();
   }
   [[nodiscard]] int terms() const { return static_cast<int>(unknowns_.terms); }
-  [[nodiscard]] int pieces() const { return static_cast<int>(pieces_.size()); }
-  [[nodiscard]] double longest_piece() const;
+  [[nodiscard]] int elements() const { return static_cast<int>(elements_.size()); }
+  [[nodiscard]] double longest_element() const;
 
   /// Identifier of the model's present values. It changes with reset() and when a clamp's angle
   /// changes.
@@ -125,8 +125,8 @@ class SpanEnergy {
   [[nodiscard]] TangentField field(const Eigen::VectorXd& x) const;
   [[nodiscard]] Energies energies(const SpanPoint& at) const;
 
-  [[nodiscard]] const Piece& piece(Eigen::Index index) const {
-    return pieces_[static_cast<std::size_t>(index)];
+  [[nodiscard]] const Element& element(Eigen::Index index) const {
+    return elements_[static_cast<std::size_t>(index)];
   }
   /// Legendre table that defines the nodes of each element.
   [[nodiscard]] const LegendreTable& table() const { return *table_; }
@@ -146,8 +146,9 @@ class SpanEnergy {
   }
 
   /// Returns the arc length of one of Span::contacts if it slides; std::nullopt for other contacts.
-  [[nodiscard]] std::optional<double> touches_at(const SpanPoint& at, std::size_t contact) const {
-    return contacts_.touches_at(at.contacts, contact);
+  [[nodiscard]] std::optional<double> contact_arc_length(const SpanPoint& at,
+                                                         std::size_t contact) const {
+    return contacts_.contact_arc_length(at.contacts, contact);
   }
 
   /// hold_torque() returns the torque of one of the span's grips beyond the first, start_torque()
@@ -173,19 +174,23 @@ class SpanEnergy {
       const Eigen::Ref<const Eigen::VectorXd>& multipliers) const {
     return multipliers.segment(grips_.positions(), contacts_.count());
   }
-  [[nodiscard]] TermSetup setup() const { return {span_, pieces_, *table_, s_, weights_, plane_}; }
+  [[nodiscard]] TermSetup setup() const {
+    return {span_, elements_, *table_, s_, weights_, plane_};
+  }
   void constrain(SpanPoint& point) const;
   [[nodiscard]] bool is_curved() const;
   void add_curvature(const SpanPoint& at, const Eigen::Ref<const Eigen::VectorXd>& multipliers,
                      const std::array<Eigen::MatrixXd, 3>& tangents,
                      Eigen::Ref<Eigen::MatrixXd> hessian) const;
-  void carry(SpanPoint& at, const Eigen::Ref<const Eigen::VectorXd>& multipliers) const;
-  void carry_tilts(SpanPoint& at, const Eigen::Ref<const Eigen::VectorXd>& multipliers) const;
+  void compute_carried_force(SpanPoint& at,
+                             const Eigen::Ref<const Eigen::VectorXd>& multipliers) const;
+  void compute_tilt_coefficients(SpanPoint& at,
+                                 const Eigen::Ref<const Eigen::VectorXd>& multipliers) const;
   void unwrap(const Eigen::Ref<const Eigen::VectorXd>& x);
-  void revise();
+  void update_revision();
 
   Span span_;
-  std::vector<Piece> pieces_;
+  std::vector<Element> elements_;
   SpanUnknowns unknowns_;
   double twist_root_ = 0;  // derivative of the last unknown by the twist
   const LegendreTable* table_ = nullptr;

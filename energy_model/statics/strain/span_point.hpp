@@ -24,7 +24,7 @@ struct SpanPoint {
   Eigen::MatrixX3d force;     ///< -dE/dt without bending, nodes x 3: loads and soft obstacles
   PlanarFrames::State plane;  ///< frames of a span in its plane
   RodFrames::State frames;    ///< frames of a span in space
-  ContactPlace contacts;
+  ContactEvaluation contacts;
   /// SpanEnergy::revision() at the evaluation; 0: not evaluated.
   long revision = 0;
 

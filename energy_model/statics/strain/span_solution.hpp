@@ -34,8 +34,8 @@ struct [[nodiscard]] SpanSolution {
   /// Number of eigenvalues that are zero to the tolerance, without rigid-body modes; near_singular
   /// if > 0.
   int neutral_directions = 0;
-  /// Result of turns_lost() for an intrinsically curved rod with both end frames prescribed.
-  int turns_lost = 0;
+  /// Result of missing_turns() for an intrinsically curved rod with both end frames prescribed.
+  int missing_turns = 0;
   int rigid_body_modes = 0;  ///< number of rigid-body modes, if certify() has processed the shape
   std::shared_ptr<SpanEnergy> model;
   Eigen::VectorXd x;

@@ -16,7 +16,7 @@ namespace dlo::energy_model {
 /// Discretisation of a span, from which its terms are set up.
 struct TermSetup {
   const Span& span;
-  const std::vector<Piece>& pieces;
+  const std::vector<Element>& elements;
   const LegendreTable& table;
   const Eigen::VectorXd& nodes;    ///< arc lengths of the quadrature nodes
   const Eigen::VectorXd& weights;  ///< quadrature weights

@@ -30,7 +30,7 @@ namespace {
 using dlo::compare::InputError;
 using dlo::compare::InputFile;
 using dlo::test::error_of;
-using dlo::test::says;
+using dlo::test::has_all;
 
 class Reading : public dlo::test::Folder {};
 
@@ -63,7 +63,7 @@ TEST_F(Reading, AnErrorAfterThePartThatCouldBeReadIsAnError) {
   InputFile file(terminal, "a.toml");
   std::string text;
   const std::string message = error_of<InputError>([&] {
-    while (file.read_some(text, 100)) continue;
+    while (file.read_block(text, 100)) continue;
   });
   EXPECT_EQ(text, "first half");
   EXPECT_EQ(message, "a.toml: cannot be read (Input/output error, after 10 bytes)");
@@ -81,12 +81,12 @@ TEST_F(Reading, EveryReaderTellsAReadErrorAndADirectory) {
 TEST_F(Reading, EveryReaderTellsWhyAFileCannotBeOpened) {
   std::filesystem::create_symlink(path("loop"), path("loop"));
   for (const std::string& message : messages_of_all_readers(path("loop"))) {
-    EXPECT_TRUE(says(message, {"Too many levels of symbolic links"}));
+    EXPECT_TRUE(has_all(message, {"Too many levels of symbolic links"}));
   }
   write("here.toml", "x");
   for (const std::string& message : messages_of_all_readers(path("here"))) {
     EXPECT_TRUE(
-        says(message, {"(No such file or directory, but " + path("here.toml") + " is there)"}));
+        has_all(message, {"(No such file or directory, but " + path("here.toml") + " is there)"}));
   }
 }
 
@@ -110,9 +110,9 @@ TEST_F(Reading, TellsThatAFileIsForOthers) {
   write("a.toml", "x");
   std::filesystem::permissions(path("a.toml"), std::filesystem::perms::none);
   // The superuser may read everything.
-  constexpr uid_t nobody = 65534;
+  constexpr uid_t unprivileged = 65534;
   const bool root = ::geteuid() == 0;
-  if (root && ::seteuid(nobody) != 0) GTEST_SKIP() << "cannot become another user";
+  if (root && ::seteuid(unprivileged) != 0) GTEST_SKIP() << "cannot become another user";
   const std::string message =
       error_of<InputError>([&] { (void)dlo::compare::load_scene(path("a.toml")); });
   if (root) {
@@ -129,7 +129,7 @@ TEST_F(Reading, EndsWhereAFileIsTooLarge) {
   EXPECT_EQ(message, path("a") + ": too large (allowed: files of up to 999 bytes)");
   const std::string endless =
       error_of<InputError>([] { (void)InputFile("/dev/zero").read_all(std::size_t{1} << 20); });
-  EXPECT_TRUE(says(endless, {"too large"}));
+  EXPECT_TRUE(has_all(endless, {"too large"}));
 }
 
 std::string repeated(const std::string& text, int times) {
@@ -152,8 +152,8 @@ TEST(TextLimits, NothingIsNestedSoDeepThatAParserOverflows) {
   EXPECT_EQ(scene("\na = " + repeated("{a = ", many) + "1" + repeated("}", many)), brackets);
   // The largest allowed depth reaches the parser.
   const std::string unknown = ": unknown key (allowed: distributed_load, ";
-  EXPECT_TRUE(says(scene("a" + repeated(".a", 31) + " = 1"), {unknown}));
-  EXPECT_TRUE(says(scene("a = " + repeated("[", 32) + repeated("]", 32)), {unknown}));
+  EXPECT_TRUE(has_all(scene("a" + repeated(".a", 31) + " = 1"), {unknown}));
+  EXPECT_TRUE(has_all(scene("a = " + repeated("[", 32) + repeated("]", 32)), {unknown}));
 }
 
 TEST(TextLimits, StringsAndCommentsNestNothing) {
@@ -178,7 +178,7 @@ TEST(TextLimits, NumbersBeyondADoubleAreSaidToBe) {
   const auto expect = [&](const std::string& number, const std::string& words) {
     const std::string message = scene(number);
     EXPECT_EQ(message.find("s.toml:2: "), 0U) << message;
-    EXPECT_TRUE(says(message, {words}));
+    EXPECT_TRUE(has_all(message, {words}));
   };
   expect("1e-400", "1e-400 is too small");
   expect("1e400", "1e400 is too large");
@@ -226,8 +226,8 @@ TEST(TextLimits, OfVariedFields) {
   const auto vary = [&](const std::string& field, const std::string& value) {
     return error_of<InputError>([&] { (void)scene.with({{field, value}}); });
   };
-  EXPECT_TRUE(says(vary("a" + repeated(".a", 60'000), "1"), {"too many dotted parts"}));
-  EXPECT_TRUE(says(vary("gravity", repeated("[", 60'000)), {"brackets within brackets"}));
+  EXPECT_TRUE(has_all(vary("a" + repeated(".a", 60'000), "1"), {"too many dotted parts"}));
+  EXPECT_TRUE(has_all(vary("gravity", repeated("[", 60'000)), {"brackets within brackets"}));
 }
 
 }  // namespace

@@ -22,8 +22,8 @@
 
 namespace {
 
-using dlo::test::says;
-using dlo::test::says_none;
+using dlo::test::has_all;
+using dlo::test::has_none;
 
 using namespace dlo::compare;
 
@@ -98,13 +98,13 @@ TEST_F(DecimalComma, ChangesNothingThatIsWritten) {
   const Solution solution = solve(scene, Model::energy, {}, equal_arc_lengths(0.5, 3));
   const std::string vtk = vtk_polyline(
       solution.shape, {.curvature = solution.curvature, .tension = solution.tension}, "rod");
-  EXPECT_TRUE(says_none(vtk, {","}));
+  EXPECT_TRUE(has_none(vtk, {","}));
   const MeasuredShape back = parse_shape(vtk, "shape.vtk", 1);
   EXPECT_TRUE(back.points.isApprox(solution.shape.points, 1e-12));
   BaselineCase entry = {.scene = "rod", .points = 1500};
   entry.errors = {0.125, 0.25, 0.5};
   const std::string text = baseline_text({entry});
-  EXPECT_TRUE(says(text, {"points = 1500\nrms_over_length = 0.125"}));
+  EXPECT_TRUE(has_all(text, {"points = 1500\nrms_over_length = 0.125"}));
   EXPECT_EQ(baseline_text(read_baseline(text, "b.toml")), text);
 }
 

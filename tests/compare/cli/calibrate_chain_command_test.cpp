@@ -11,14 +11,15 @@
 namespace {
 
 using dlo::test::CalibrateCommand;
+using dlo::test::has_all;
+using dlo::test::has_none;
 using dlo::test::Outcome;
-using dlo::test::says;
-using dlo::test::says_none;
 using nlohmann::json;
 
 TEST_F(CalibrateCommand, TellsTheJointsOfAChain) {
   const std::string a = scene_of("a.toml", "5 GPa", 0);
-  const std::string chain = words({"calibrate", a, "--shape", seen(a, "a.csv"), "--segments 12"});
+  const std::string chain =
+      words({"calibrate", a, "--shape", write_exact_shape(a, "a.csv"), "--segments 12"});
   const json chains = json_of(chain).at("chains");
   ASSERT_EQ(chains.size(), 3U);
   EXPECT_EQ(chains[0].at("clamp"), "hinge");
@@ -44,7 +45,7 @@ TEST_F(CalibrateCommand, WritesParametersThatTheOtherCommandsRead) {
   for (const std::string law : {"hooke", "paper"}) {
     const std::string file = path(law + ".toml");
     const std::string calibrate = words({"calibrate", a, "--holdout", b, "--law", law});
-    EXPECT_TRUE(says(said(words({calibrate, "-o", file})), {"hold-out"}));
+    EXPECT_TRUE(has_all(output_of(words({calibrate, "-o", file})), {"hold-out"}));
     const json fit = json_of(calibrate);
     const json compared = json_of(words({"compare", b, "--parameters", file})).at("cases")[0];
     EXPECT_EQ(compared.at("law"), law);
@@ -71,8 +72,8 @@ TEST_F(CalibrateCommand, TellsWhatMadeTheTargetMissed) {
   };
   // The error is due to the number of segments, not to stretch.
   const std::string coarse = missed(stiff + " --target 0.01% --points 8");
-  EXPECT_TRUE(says(coarse, {"N = 8 is too few"}));
-  EXPECT_TRUE(says_none(coarse, {"A E: the rod"}));
+  EXPECT_TRUE(has_all(coarse, {"N = 8 is too few"}));
+  EXPECT_TRUE(has_none(coarse, {"A E: the rod"}));
   // A rod of 500 kPa stretches under its weight by more than the target.
   const std::string soft = scene_of("soft.toml", "500 kPa", -90);
   const json fit = json::parse(missed(soft + " --target 0.01% --points 24 --format json"));
@@ -86,25 +87,25 @@ TEST_F(CalibrateCommand, TellsWhatMadeTheTargetMissed) {
   const double mean_square = scale * scale * 2 / 15 - 2 * u(held) * scale / 3 + u(held) * u(held);
   EXPECT_NEAR(stretch, std::sqrt(mean_square), 0.005 * stretch);
   ASSERT_EQ(fit.at("why_missed").size(), 1U);
-  EXPECT_TRUE(says(fit.at("why_missed")[0].get<std::string>(), {"c_c is A E"}));
-  EXPECT_TRUE(says(missed(stiff + " --law paper --target 0.001%"), {"law paper"}));
+  EXPECT_TRUE(has_all(fit.at("why_missed")[0].get<std::string>(), {"c_c is A E"}));
+  EXPECT_TRUE(has_all(missed(stiff + " --law paper --target 0.001%"), {"law paper"}));
   // The parameter file states the source of c_c and whether it suffices.
   const std::string toml =
       run("calibrate " + soft + " --target 0.01% --points 24 --format toml").out;
-  EXPECT_TRUE(says(toml, {"# Target 0.01 %: not reached."}));
-  EXPECT_TRUE(says(toml, {"stretch stiffness: A E of the rod\n"}));
+  EXPECT_TRUE(has_all(toml, {"# Target 0.01 %: not reached."}));
+  EXPECT_TRUE(has_all(toml, {"stretch stiffness: A E of the rod\n"}));
 }
 
 TEST_F(CalibrateCommand, KeepsAStepperThatHasNoParameters) {
   const std::string scene = scene_of("wire.toml", "5 MPa", 20);
   const std::string file = path("parameters.toml");
   for (const std::string stepper : {"implicit", "verlet"}) {
-    EXPECT_TRUE(
-        says(said("calibrate " + scene + " --points 12 --stepper " + stepper + " -o " + file),
-             {" " + stepper + "\n"}));
+    EXPECT_TRUE(has_all(
+        output_of("calibrate " + scene + " --points 12 --stepper " + stepper + " -o " + file),
+        {" " + stepper + "\n"}));
     const std::string text = read(file);
-    EXPECT_TRUE(says(text, {"stepper = \"" + stepper + "\"\n"}));
-    EXPECT_TRUE(says_none(text, {"c_F"}));
+    EXPECT_TRUE(has_all(text, {"stepper = \"" + stepper + "\"\n"}));
+    EXPECT_TRUE(has_none(text, {"c_F"}));
     succeeds("solve " + scene + " --model force --parameters " + file);
   }
 }

@@ -15,14 +15,15 @@
 namespace {
 
 using dlo::test::CalibrateCommand;
-using dlo::test::says;
-using dlo::test::says_none;
+using dlo::test::has_all;
+using dlo::test::has_none;
 using nlohmann::json;
 
 TEST_F(CalibrateCommand, FindsTheModulusOfMeasuredShapes) {
   const std::string a = scene_of("a.toml", "5 GPa", 0);
   const std::string b = scene_of("b.toml", "5 GPa", 40);
-  const std::string shapes = " --shape " + seen(a, "a.csv") + " " + seen(b, "b.csv");
+  const std::string shapes =
+      " --shape " + write_exact_shape(a, "a.csv") + " " + write_exact_shape(b, "b.csv");
   const std::string guess =
       scene_of("a.toml", "30 GPa", 0) + " " + scene_of("b.toml", "30 GPa", 40);
   for (const std::string pose : {"", " --register", " --register=upright"}) {
@@ -46,13 +47,13 @@ TEST_F(CalibrateCommand, NamesWhatSystematicResidualsAskFor) {
     std::string bent = read(straight);
     bent.replace(bent.find("[rod]"), 5, "[rod]\nnatural_curvature = \"0.7 1/m\"");
     scenes.push_back(straight);
-    shapes.push_back(seen(scene(bent), fmt::format("s{}.csv", angle)));
+    shapes.push_back(write_exact_shape(scene(bent), fmt::format("s{}.csv", angle)));
   }
   const std::string command =
       fmt::format("calibrate {} --shape {}", fmt::join(scenes, " "), fmt::join(shapes, " "));
   const json document = json_of(command + " --options given");
   EXPECT_GT(document.at("common_share").get<double>(), 0.6);
-  EXPECT_TRUE(says(document.at("alternatives").dump(), {"--natural-curvature 1"}));
+  EXPECT_TRUE(has_all(document.at("alternatives").dump(), {"--natural-curvature 1"}));
   // With three shapes this parameter is chosen.
   const json chosen = json_of(command);
   EXPECT_EQ(chosen.at("tried")[0].at("options"), "--natural-curvature 1");
@@ -71,13 +72,13 @@ TEST_F(CalibrateCommand, EqualShapesCountOnce) {
   const json repeated = json_of(four);
   EXPECT_EQ(repeated.at("interval_95_Pa"), once.at("interval_95_Pa"));
   EXPECT_EQ(repeated.at("shapes").size(), 1U);
-  EXPECT_TRUE(says(run(four).out, {"shapes with the same points are fitted once", "copy.csv"}));
+  EXPECT_TRUE(has_all(run(four).out, {"shapes with the same points are fitted once", "copy.csv"}));
 }
 
 // Rods under their own weight, whose searches need more evaluations than one.
 TEST_F(CalibrateCommand, FailedSolvesAreAnError) {
   const std::string a = scene_of("a.toml", "5 GPa", 0);
-  const std::string shape = seen(scene_of("a.toml", "5 MPa", 0), "a.csv");
+  const std::string shape = write_exact_shape(scene_of("a.toml", "5 MPa", 0), "a.csv");
   scene_of("a.toml", "5 GPa", 0);
   expect_error(words({"calibrate", a, "--shape", shape, "--max-evaluations 1"}), 3,
                {"a.toml", "equilibria ended at the evaluation limit", "--max-evaluations"});
@@ -85,11 +86,11 @@ TEST_F(CalibrateCommand, FailedSolvesAreAnError) {
 
 TEST_F(CalibrateCommand, StatesWhatTheShapesCannotShow) {
   const std::string a = scene_of("a.toml", "5 GPa", 0);
-  const std::string command = words({"calibrate", a, "--shape", seen(a, "a.csv")});
+  const std::string command = words({"calibrate", a, "--shape", write_exact_shape(a, "a.csv")});
   const auto assumed = [&](const std::string& options) {
     return json_of(command + options).at("assumed");
   };
-  EXPECT_TRUE(says_none(run(command).out, {"camera tilt"}));
+  EXPECT_TRUE(has_none(run(command).out, {"camera tilt"}));
   EXPECT_EQ(assumed(""), json({"length", "weight", "scale", "vertical", "natural curvature",
                                "clamp directions"}));
   EXPECT_EQ(assumed(" --register"),
@@ -125,7 +126,8 @@ TEST_F(CalibrateCommand, AWeightlessArcGetsItsCurvatureAndNoStiffness) {
                               write_table("arc.csv", "x,y,z,s", points) + " --natural-curvature 1";
   const json document = json_of(command);
   EXPECT_TRUE(document.at("interval_95_Nm2")[0].is_null());
-  EXPECT_TRUE(says(document.at("not_identified").get<std::string>(), {"EI is not identifiable"}));
+  EXPECT_TRUE(
+      has_all(document.at("not_identified").get<std::string>(), {"EI is not identifiable"}));
   expect_error(command + " --format toml", 2, {"no material to write", "EI is not identifiable"});
 }
 
@@ -153,11 +155,11 @@ TEST_F(CalibrateCommand, AColumnSInMetresBesideMillimetresIsRead) {
 
 TEST_F(CalibrateCommand, CsvIsATableAndTomlHasRemarks) {
   const std::string a = scene_of("a.toml", "5 GPa", 0);
-  const std::string shape = seen(a, "a.csv");
+  const std::string shape = write_exact_shape(a, "a.csv");
   for (const std::string& arguments :
        {words({"calibrate", a}), words({"calibrate", a, "--shape", shape})}) {
-    EXPECT_TRUE(dlo::test::is_table(said(words({arguments, "--format csv"}))));
-    EXPECT_TRUE(says(run(words({arguments, "--format toml"})).out, {"# "}));
+    EXPECT_TRUE(dlo::test::is_table(output_of(words({arguments, "--format csv"}))));
+    EXPECT_TRUE(has_all(run(words({arguments, "--format toml"})).out, {"# "}));
   }
 }
 
@@ -179,7 +181,7 @@ TEST_F(CalibrateCommand, TellsHowStiffAWireIsAgainstTwist) {
 
 TEST_F(CalibrateCommand, BadInputIsOneLineAndStatusTwo) {
   const std::string a = scene_of("a.toml", "5 GPa", 0);
-  const std::string shape = seen(a, "a.csv");
+  const std::string shape = write_exact_shape(a, "a.csv");
   expect_error("calibrate " + a + " " + a + " --shape " + shape, 2, {"2 scenes", "1 shape"});
   expect_error("calibrate " + a + " --shape " + shape + " --noise 0", 2, {"--noise"});
   expect_error("calibrate " + a + " --density", 2, {"--density", "--shape"});

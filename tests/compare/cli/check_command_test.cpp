@@ -12,8 +12,8 @@
 
 namespace {
 
-using dlo::test::says;
-using dlo::test::says_none;
+using dlo::test::has_all;
+using dlo::test::has_none;
 
 namespace compare = dlo::compare;
 using dlo::test::Command;
@@ -74,8 +74,8 @@ TEST_F(CheckCommand, WithoutAToleranceTheVerdictIsOfOnePercent) {
 TEST_F(CheckCommand, AToleranceMayBeAShareOfTheDeflection) {
   const std::string stiff = level_rod(4, 4e4, 2);
   const std::string check = "check " + stiff + " --shape " + shape("x,y\n0,0\n2,0\n4,0\n");
-  const std::string line = said(check + " --tolerance 1%");
-  EXPECT_TRUE(says(line, {"pass: ", "not significant for stiffness or weight"}));
+  const std::string line = output_of(check + " --tolerance 1%");
+  EXPECT_TRUE(has_all(line, {"pass: ", "not significant for stiffness or weight"}));
   const json failed = json_of(check + " --tolerance \"5% of deflection\"", 1);
   EXPECT_EQ(failed.at("verdict"), "fail");
   EXPECT_EQ(failed.at("tolerance").at("of_deflection"), true);
@@ -96,7 +96,7 @@ TEST_F(CheckCommand, AFileThatDoesNotDetermineTheRodIsUndetermined) {
   EXPECT_EQ(document.at("verdict"), "undetermined");
   EXPECT_LT(document.at("judged_m"), 1e-6);
   EXPECT_TRUE(document.at("explanations").empty());
-  EXPECT_TRUE(says(document.at("reason"), {"the points do not determine the rod at s = "}));
+  EXPECT_TRUE(has_all(document.at("reason"), {"the points do not determine the rod at s = "}));
 }
 
 TEST_F(CheckCommand, APassBesideAnotherStiffnessSaysWhyBothHold) {
@@ -106,7 +106,7 @@ TEST_F(CheckCommand, APassBesideAnotherStiffnessSaysWhyBothHold) {
   expect_output("check " + soft + " --tolerance 10% --shape " + file, 0, {"pass: ", words});
   // If the shape fails, E* is among the explanations, and the hint is not printed.
   const std::string narrow = run("check " + soft + " --tolerance 0.1% --shape " + file).out;
-  EXPECT_TRUE(says_none(narrow, {words}));
+  EXPECT_TRUE(has_none(narrow, {words}));
 }
 
 TEST_F(CheckCommand, TheReportIsOnePage) {
@@ -119,11 +119,11 @@ TEST_F(CheckCommand, TheReportIsOnePage) {
   succeeds("solve " + steel() + " --model chain --format csv -o " + compare::shell_word(solved));
   succeeds(check + compare::shell_word(solved));
   const std::string html = read(page);
-  EXPECT_TRUE(says(
+  EXPECT_TRUE(has_all(
       html, {"<p class=\"badge fail\">", "a&lt;b&gt;&amp;.csv\n", "explained by", "106.2 mm"}));
-  EXPECT_TRUE(says_none(html, {"a<b>", "src=\"http", "href=\"http", "@import", "url("}));
+  EXPECT_TRUE(has_none(html, {"a<b>", "src=\"http", "href=\"http", "@import", "url("}));
   succeeds(check + compare::shell_word(solved) + " --tolerance 30%");
-  EXPECT_TRUE(says(read(page), {"<p class=\"badge pass\">"}));
+  EXPECT_TRUE(has_all(read(page), {"<p class=\"badge pass\">"}));
   // The report must not overwrite an input file.
   expect_error(check + page, 2, {"is read too"});
 }
@@ -135,7 +135,7 @@ TEST_F(CheckCommand, MarkdownIsASummary) {
   const std::string check = "check " + steel() + " --format markdown --shape " + quoted;
   const std::string summary = run(check + " --tolerance 1%").out;
   EXPECT_TRUE(summary.starts_with("### \u274c fail: ")) << summary;
-  EXPECT_TRUE(says(summary, {"RMS 106.2 mm, allowed 5 mm = 1 % of l", "a|b*.csv\n"}));
+  EXPECT_TRUE(has_all(summary, {"RMS 106.2 mm, allowed 5 mm = 1 % of l", "a|b*.csv\n"}));
   EXPECT_TRUE(run(check + " --tolerance 30%").out.starts_with("### \u2705 pass: "));
 }
 
@@ -162,7 +162,8 @@ TEST_F(CheckCommand, AStretchedOrCutRopeFailsAndIsNamed) {
   expect_output(
       check + hanging(0.8), 1,
       {"shorter than the rod by 200 mm", ", with s = 0.8 to 1 m, which the file does not have"});
-  EXPECT_TRUE(says(said(check + hanging(0.8) + " --min-seen 70%"), {"not judged: s = 0.8 to 1 m"}));
+  EXPECT_TRUE(
+      has_all(output_of(check + hanging(0.8) + " --min-seen 70%"), {"not judged: s = 0.8 to 1 m"}));
 }
 
 TEST_F(CheckCommand, WhatIsNotThereIsEmptyOrNull) {
@@ -171,7 +172,7 @@ TEST_F(CheckCommand, WhatIsNotThereIsEmptyOrNull) {
                             "/failures/check_hang.toml --shape " +
                             shape("x,y\n0,0\n0,-0.4\n0,-0.8\n") + " --tolerance 1% --format";
   for (const std::string modulus : {"", "--no-modulus"}) {
-    EXPECT_TRUE(says(run(words({check, "csv", modulus})).out, {",,"}));
+    EXPECT_TRUE(has_all(run(words({check, "csv", modulus})).out, {",,"}));
     const json document = json::parse(run(words({check, "json", modulus})).out);
     EXPECT_TRUE(document.at("deviation").at("tip_m").is_null());
     EXPECT_TRUE(document.at("effective_modulus_ratio").is_null());
@@ -184,7 +185,7 @@ TEST_F(CheckCommand, WhatIsNotThereIsEmptyOrNull) {
 
 TEST_F(CheckCommand, TextBeginsWithTheVerdictAndThreeNumbers) {
   const std::string text =
-      said("check " + steel() + " --shape " + solved_file(steel() + " --model exact"));
+      output_of("check " + steel() + " --shape " + solved_file(steel() + " --model exact"));
   EXPECT_EQ(text.substr(0, 10), "pass: RMS ");
   const std::size_t rms = text.find("\n  deviation       RMS ");
   const std::size_t largest = text.find("\n                  largest ");

@@ -18,8 +18,8 @@
 namespace {
 
 using dlo::test::Command;
+using dlo::test::has_all;
 using dlo::test::Outcome;
-using dlo::test::says;
 using nlohmann::json;
 
 const std::string good = dlo::test::steel_rod + dlo::test::gripper_text("direction = \"-175 deg\"");
@@ -42,7 +42,7 @@ TEST_F(Command, PaperHasTheSameNumbersInJsonAndInCsv) {
   succeeds("paper --format json -o " + path("paper.json"));
   const json document = json::parse(read(path("paper.json")));
   EXPECT_EQ(document.at("schema"), "dlo/paper/1");
-  const std::vector<dlo::test::CsvRow> rows = dlo::test::csv_rows(said("paper --format csv"));
+  const std::vector<dlo::test::CsvRow> rows = dlo::test::csv_rows(output_of("paper --format csv"));
   ASSERT_GT(rows.size(), 1000U);
   for (const dlo::test::CsvRow& row : std::span(rows).subspan(1)) {
     const json& value = document.at(json::json_pointer("/" + row.at(0)));
@@ -80,9 +80,9 @@ TEST_F(Command, StabilityWritesTheContractsJsonAndFailsForNothingButAutoAndImpli
   EXPECT_EQ(run("stability --case crossed --stepper auto --max-steps-auto 100").status, 1);
   const Outcome refused = run("stability --case \"pulled too far\" --stepper auto");
   const Outcome no_number = run("stability --case \"pulled too far\" --stepper auto --format csv");
-  EXPECT_TRUE(says(no_number.out, {"\npulled too far,auto,refused,0,,false,"}));
+  EXPECT_TRUE(has_all(no_number.out, {"\npulled too far,auto,refused,0,,false,"}));
   EXPECT_EQ(refused.status, 0);
-  EXPECT_TRUE(says(refused.out, {"no more than the 0.5 m of rod"}));
+  EXPECT_TRUE(has_all(refused.out, {"no more than the 0.5 m of rod"}));
 }
 
 TEST_F(Command, StabilityMapTakesAScene) {
@@ -153,7 +153,7 @@ TEST_F(Command, TheExtensionIsTheFormatUnlessOneIsGiven) {
 }
 
 /// Returns words that give an option, with a value that the option takes.
-std::string given(const std::string& option) {
+std::string with_value(const std::string& option) {
   static const std::string examples =
       "--arc-lengths file --unit mm --segments 8 --shape a.csv --motion a.csv "
       "--parameters a.toml --points 12 --law hooke --bookkeeping paper --stepper dynamic "
@@ -180,7 +180,7 @@ std::string with_conditions(const std::string& command, const dlo::cli::Ineffect
     if (condition.values.empty()) continue;
     const std::string& value = condition.values.front();
     const bool has_example = value == dlo::cli::any_value || value == dlo::cli::whole_number;
-    line += " " + (has_example ? given(condition.option) : condition.option + " " + value);
+    line += " " + (has_example ? with_value(condition.option) : condition.option + " " + value);
   }
   return line;
 }
@@ -196,7 +196,7 @@ TEST_F(Command, EveryOptionWithoutEffectIsRefusedOrReported) {
   for (const auto& [command, row] : rows) {
     const std::string line = with_conditions(command, row, steel());
     for (const std::string& option : row.options) {
-      const std::string all = option == "--format" ? line : line + " " + given(option);
+      const std::string all = option == "--format" ? line : line + " " + with_value(option);
       const std::vector<std::string> words = {
           option, option == "--format" ? "not available" : "no effect", "(allowed: " + row.allowed};
       if (row.response == dlo::cli::NoEffect::refused) {
@@ -205,7 +205,7 @@ TEST_F(Command, EveryOptionWithoutEffectIsRefusedOrReported) {
       } else {
         const Outcome outcome = run(all);
         if (outcome.status == 2) continue;  // the value is an error of its own
-        EXPECT_TRUE(says(outcome.err, words)) << all;
+        EXPECT_TRUE(has_all(outcome.err, words)) << all;
         ++stated;
       }
     }

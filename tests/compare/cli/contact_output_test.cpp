@@ -12,8 +12,8 @@
 
 namespace {
 
-using dlo::test::says;
-using dlo::test::says_none;
+using dlo::test::has_all;
+using dlo::test::has_none;
 using nlohmann::json;
 
 class ContactCommand : public dlo::test::Command {
@@ -58,9 +58,9 @@ TEST_F(ContactCommand, FrictionIsLeftOutAloud) {
     EXPECT_EQ(with.at("neglected"), json({"friction"}));
     EXPECT_EQ(with.at("points_m"), without.at("points_m"));
     EXPECT_FALSE(without.contains("neglected"));
-    EXPECT_TRUE(says(solve("text", rough).out,
-                     {"\nneglected ", " friction\n", "friction could hold others"}));
-    EXPECT_TRUE(says(solve("csv", rough).err, {"neglects the friction"}));
+    EXPECT_TRUE(has_all(solve("text", rough).out,
+                        {"\nneglected ", " friction\n", "friction could hold others"}));
+    EXPECT_TRUE(has_all(solve("csv", rough).err, {"neglects the friction"}));
     EXPECT_FALSE(json::parse(solve("json", rough_below).out).contains("neglected"));
   }
   const json compared = json_of("compare --no-modulus " + rough);
@@ -68,7 +68,7 @@ TEST_F(ContactCommand, FrictionIsLeftOutAloud) {
   const std::string shape = " --shape " + solved_file(smooth + " --samples 40");
   const std::string check = "check --no-modulus --tolerance 1% ";
   EXPECT_EQ(json_of(check + rough + shape).at("neglected"), json({"friction"}));
-  EXPECT_TRUE(says(run("solve --explain " + rough).out, {"\n  friction "}));
+  EXPECT_TRUE(has_all(run("solve --explain " + rough).out, {"\n  friction "}));
 }
 
 // A cable next to a peg, a ball or a box: all models have the same bodies.
@@ -89,7 +89,7 @@ TEST_F(ContactCommand, AllModelsTouchTheSameBodies) {
       text.append(std::to_string(points)).append("\n[[obstacle]]\n").append(body);
       std::string line = "solve --format json --samples 13 --model ";
       line.append(model).append(" ").append(write("body.toml", text));
-      return json::parse(said(line));
+      return json::parse(output_of(line));
     };
     const json energy = solve("energy", 16);
     ASSERT_EQ(energy.at("contacts").size(), 1);
@@ -98,7 +98,8 @@ TEST_F(ContactCommand, AllModelsTouchTheSameBodies) {
     for (const std::string model : {"chain", "force"}) {
       for (const int points : {64, 128}) {
         const json polygon = solve(model, points);
-        EXPECT_LT(points_apart(polygon, energy), 2e-3 * 0.6) << model << " with " << points;
+        EXPECT_LT(largest_coordinate_difference(polygon, energy), 2e-3 * 0.6)
+            << model << " with " << points;
         const double force = polygon.at("obstacles")[0].at("force_N")[0].get<double>();
         EXPECT_NEAR(force, pushed, 0.2 * pushed) << model << " with " << points;
         EXPECT_NEAR(force, -polygon.at("grippers")[0].at("force_N")[0].get<double>(), 1e-6);
@@ -120,7 +121,7 @@ TEST_F(ContactCommand, SolveSaysWhereARodCrossesItself) {
   EXPECT_LT(crossing.at("distance_m").get<double>(), 2e-3);
   EXPECT_NEAR(crossing.at("s_m")[1].get<double>() - crossing.at("s_m")[0].get<double>(),
               2 * M_PI / 9, 0.02);
-  EXPECT_TRUE(says_none(run("solve " + lying()).out, {"crossing"}));
+  EXPECT_TRUE(has_none(run("solve " + lying()).out, {"crossing"}));
 }
 
 }  // namespace

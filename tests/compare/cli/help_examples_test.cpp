@@ -13,8 +13,8 @@
 namespace {
 
 using dlo::test::Command;
+using dlo::test::has_all;
 using dlo::test::Outcome;
-using dlo::test::says;
 
 class Reference : public Command {
  protected:
@@ -89,9 +89,9 @@ TEST_F(Reference, ManualPageOfThePackageListsEveryCommand) {
   if (bash("command -v help2man").status != 0) GTEST_SKIP() << "no help2man";
   const Outcome page = bash("help2man --no-info --name models dlo");
   EXPECT_EQ(page.status, 0) << page.err;
-  EXPECT_TRUE(says(page.out, {".SH NAME\ndlo", ".SH SYNOPSIS", "Exit status: 0 good"}));
+  EXPECT_TRUE(has_all(page.out, {".SH NAME\ndlo", ".SH SYNOPSIS", "Exit status: 0 good"}));
   for (const std::string& command : commands()) {
-    EXPECT_TRUE(says(page.out, {"\n" + command})) << command;
+    EXPECT_TRUE(has_all(page.out, {"\n" + command})) << command;
   }
 }
 

@@ -22,8 +22,8 @@ using dlo::compare::Scene;
 using dlo::compare::scene_text;
 using dlo::compare::SceneChoices;
 using dlo::test::Command;
+using dlo::test::has_all;
 using dlo::test::Outcome;
-using dlo::test::says;
 using nlohmann::json;
 
 /// The optional paragraphs of a scene file, without the # of their lines.
@@ -53,7 +53,8 @@ TEST_F(Command, WithoutArgumentsTellsWhatThereIsToDo) {
 }
 
 TEST_F(Command, InitPrintsALargeModulusInGigapascal) {
-  EXPECT_TRUE(says(said("init " + path("steel") + " --material spring_steel"), {" GPa, density"}));
+  EXPECT_TRUE(
+      has_all(output_of("init " + path("steel") + " --material spring_steel"), {" GPa, density"}));
 }
 
 TEST_F(Command, SuggestsTheNearestWord) {
@@ -66,8 +67,9 @@ TEST_F(Command, SuggestsTheNearestWord) {
 
 TEST_F(Command, InitWritesASceneThatSolves) {
   const std::string file = path("cable.toml");
-  EXPECT_TRUE(says(said("init " + file + " --length 2m --diameter '6 mm' --material silicone"),
-                   {"dlo solve " + file}));
+  EXPECT_TRUE(
+      has_all(output_of("init " + file + " --length 2m --diameter '6 mm' --material silicone"),
+              {"dlo solve " + file}));
   const Scene scene = dlo::compare::load_scene(file);
   EXPECT_EQ(scene.name, "cable");
   EXPECT_EQ(scene.length, 2);
@@ -80,7 +82,7 @@ TEST_F(Command, InitWritesASceneThatSolves) {
 
 TEST_F(Command, InitTakesANameAndAMaterialOfOnesOwn) {
   const std::string arguments = "--youngs-modulus '5 MPa' --density 1100 --direction '[0, 0, 1]'";
-  const std::string result = said("init '" + path("my hose") + "' " + arguments);
+  const std::string result = output_of("init '" + path("my hose") + "' " + arguments);
   const Scene scene = dlo::compare::load_scene(path("my_hose.toml"));
   EXPECT_EQ(scene.name, "my hose");
   EXPECT_EQ(scene.material.youngs_modulus, 5e6);
@@ -103,7 +105,7 @@ TEST_F(Command, InitWritesASceneWithZUp) {
   };
   EXPECT_NEAR(tip(at_z, 0), tip(at_y, 0), 1e-9);
   EXPECT_NEAR(tip(at_z, 2), tip(at_y, 1), 1e-9);
-  EXPECT_TRUE(says(read(path("z.toml")), {"normal = [0, 0, 1]"}));
+  EXPECT_TRUE(has_all(read(path("z.toml")), {"normal = [0, 0, 1]"}));
   expect_error("init " + path("x.toml") + " --up x", 2, {"--up", "y", "z"});
 }
 
@@ -125,7 +127,7 @@ TEST_F(Command, InitTakesAnyNameAndNamesTheOptionThatIsWrong) {
   // Names that look like numbers, need quotes in a shell, or are too long for a file.
   for (const std::string name : {"2025", "nan", "it's", "a \"b\""}) {
     const std::string quoted = name == "it's" ? "it\\'s" : "'" + name + "'";
-    const std::string result = said("init " + path("") + quoted);
+    const std::string result = output_of("init " + path("") + quoted);
     // A shell accepts the command that the text recommends.
     const std::size_t at = result.find("dlo solve ") + 4;
     EXPECT_EQ(run(result.substr(at, result.find("      ", at) - at)).status, 0) << result;

@@ -10,9 +10,9 @@
 namespace {
 
 using dlo::test::Command;
+using dlo::test::has_all;
+using dlo::test::has_none;
 using dlo::test::Outcome;
-using dlo::test::says;
-using dlo::test::says_none;
 
 TEST_F(Command, NumbersOfOptionsAreInTheirRange) {
   const std::string solve = words({"solve", steel(), "--model force"});
@@ -81,7 +81,7 @@ TEST_F(Command, MessagesShortenValuesOfAMegabyte) {
   EXPECT_EQ(outcome.status, 2);
   EXPECT_LT(outcome.err.size(), 2000U);
   EXPECT_TRUE(
-      says(outcome.err, {"scene.toml:2: rod.length", "bytes)", "(allowed: m, cm, mm, um)"}));
+      has_all(outcome.err, {"scene.toml:2: rod.length", "bytes)", "(allowed: m, cm, mm, um)"}));
 }
 
 TEST_F(Command, AModelThatDoesNotTakeASceneSaysWhichDoes) {
@@ -95,7 +95,7 @@ TEST_F(Command, AModelThatDoesNotTakeASceneSaysWhichDoes) {
   const std::string file = scene(soft);
   expect_error("solve " + file + " --model exact", 2,
                {"scene.toml: rod: model exact", "must be <= 1e6"});
-  EXPECT_TRUE(says_none(run("solve " + file + " --model exact").err, {"solve_exact"}));
+  EXPECT_TRUE(has_none(run("solve " + file + " --model exact").err, {"solve_exact"}));
 }
 
 }  // namespace

@@ -24,8 +24,8 @@ namespace {
 
 using dlo::test::Output;
 
-using dlo::test::says;
-using dlo::test::says_none;
+using dlo::test::has_all;
+using dlo::test::has_none;
 
 using dlo::compare::display;
 using dlo::compare::valid_utf8;
@@ -37,7 +37,7 @@ const std::string held_at_both_ends =
 
 /// The first word of an output that is NaN, infinite or -0, or that only a programmer of dlo knows;
 /// empty: none.
-std::string wrong_word(const std::string& text) {
+std::string first_invalid_word(const std::string& text) {
   static const std::regex wrong(
       "Problem:|solve_(?:energy|exact|polygon)|"
       "(?:^|[^\\w.])(?:[Nn][Aa][Nn]|[Ii][Nn][Ff](?:[Ii][Nn][Ii][Tt][Yy])?|-[0.]*0[0.]*)(?![\\w.])");
@@ -104,9 +104,9 @@ TEST_F(Output, NoNumberIsNanOrInfinity) {
     if (command != "compare both.toml" && command != "stability --case pulled") continue;
     const Outcome json = bash("$dlo " + command + " --format json");
     EXPECT_FALSE(nlohmann::json::parse(json.out, nullptr, false).is_discarded()) << command;
-    EXPECT_EQ(wrong_word(json.out), "") << command << "\n" << json.out;
+    EXPECT_EQ(first_invalid_word(json.out), "") << command << "\n" << json.out;
     const Outcome text = bash("$dlo " + command);
-    EXPECT_EQ(wrong_word(text.out + text.err), "") << command << "\n" << text.out;
+    EXPECT_EQ(first_invalid_word(text.out + text.err), "") << command << "\n" << text.out;
   }
   EXPECT_GT(empty, 10);  // otherwise the loop has tested nothing
   // The first commands of a new user, with any material: thin rods are soft, thick ones stiff.
@@ -118,8 +118,8 @@ TEST_F(Output, NoNumberIsNanOrInfinity) {
       succeeds("solve " + path("s.toml") + " --samples 9 -o " + path("f.csv"));
       for (const std::string& command : commands_for_new_scene(path(""), index++)) {
         const Outcome result = run(command);
-        EXPECT_EQ(wrong_word(result.out + result.err), "") << command << made << "\n"
-                                                           << result.out << result.err;
+        EXPECT_EQ(first_invalid_word(result.out + result.err), "") << command << made << "\n"
+                                                                   << result.out << result.err;
       }
     }
   }
@@ -128,11 +128,11 @@ TEST_F(Output, NoNumberIsNanOrInfinity) {
 TEST(WrongWord, IsAnUndefinedNumberOrASignedZero) {
   for (const char* wrong : {"+nan %", "1/inf", "x, -nan", "[-0, 1]", "-0.000 m", "-0.00%", "INF",
                             "PolygonProblem: smallest rest length = 1"}) {
-    EXPECT_NE(wrong_word(wrong), "") << wrong;
+    EXPECT_NE(first_invalid_word(wrong), "") << wrong;
   }
   for (const char* right : {"information", "1e-00", "-0.01", "0", "+0", "--no-force", "nano-0.5",
                             "1e-05", "-", "a-b", "-1", "1-0"}) {
-    EXPECT_EQ(wrong_word(right), "") << right;
+    EXPECT_EQ(first_invalid_word(right), "") << right;
   }
 }
 
@@ -176,9 +176,9 @@ TEST(EquilibriaText, OfAShapeThatIsNotJudgedHasNoEigenvalue) {
   const dlo::compare::Scene scene =
       dlo::compare::load_scene(std::string(DLO_DATA) + "/scenes/spring_steel_175.toml");
   const std::string text = dlo::cli::equilibria_text(all, scene);
-  EXPECT_TRUE(says(text, {"1           0  -       not_verified                    -  [",
-                          "2           0  no      not_verified                 -2.5  ["}));
-  EXPECT_EQ(wrong_word(text), "");
+  EXPECT_TRUE(has_all(text, {"1           0  -       not_verified                    -  [",
+                             "2           0  no      not_verified                 -2.5  ["}));
+  EXPECT_EQ(first_invalid_word(text), "");
   const dlo::cli::Json document = dlo::cli::equilibria_json(all, scene, {});
   EXPECT_TRUE(document.at("equilibria")[0].at("stable").is_null());
   EXPECT_EQ(document.at("equilibria")[1].at("stable"), false);
@@ -197,7 +197,7 @@ TEST_F(Output, TextHasNoNumberThatIsRounding) {
                                   "track " + scenes + "buckling_wire.toml --no-force",
                                   "track " + scenes + "corner_routing.toml --no-force"};
   for (const std::string& command : commands) {
-    const std::string text = said(command);
+    const std::string text = output_of(command);
     std::smatch found;
     EXPECT_FALSE(std::regex_search(text, found, rounding)) << command << "\n" << text;
   }
@@ -245,7 +245,7 @@ TEST_F(Output, NamesThatAreNoTextBreakNoFormat) {
     EXPECT_FALSE(nlohmann::json::parse(json.out, nullptr, false).is_discarded()) << command;
     const std::string text = bash("$dlo " + command).out;
     EXPECT_EQ(text.find_first_of("\x1b\xff"), std::string::npos) << text;
-    EXPECT_TRUE(says(text, {"w\xef\xbf\xbd?[31mire"}));
+    EXPECT_TRUE(has_all(text, {"w\xef\xbf\xbd?[31mire"}));
   }
 }
 
@@ -266,9 +266,9 @@ TEST_F(Output, TextHoldsNoControlCharactersOfNames) {
       EXPECT_EQ(display(std::regex_replace(text, std::regex("\n"), " ")),
                 std::regex_replace(text, std::regex("\n"), " "))
           << command;
-      EXPECT_TRUE(says_none(text, {"\n  verdict  pass"})) << command;
+      EXPECT_TRUE(has_none(text, {"\n  verdict  pass"})) << command;
     }
-    EXPECT_TRUE(says(result.out + result.err, {"a?[31m??"})) << command;
+    EXPECT_TRUE(has_all(result.out + result.err, {"a?[31m??"})) << command;
   }
 }
 

@@ -20,7 +20,7 @@ namespace {
 
 using dlo::test::Output;
 
-using dlo::test::says;
+using dlo::test::has_all;
 
 namespace fs = std::filesystem;
 
@@ -37,7 +37,7 @@ TEST_F(Output, ThatIsLostOnStandardOutputIsAnError) {
       const Outcome result = bash(words({"$dlo", arguments, lost}));
       EXPECT_EQ(result.status, 5) << arguments << lost;
       EXPECT_TRUE(one_line(result.err)) << arguments << lost << "\n" << result.err;
-      EXPECT_TRUE(says(result.err, {"standard output: cannot be written"}));
+      EXPECT_TRUE(has_all(result.err, {"standard output: cannot be written"}));
     }
   }
   EXPECT_EQ(bash("$dlo solve cable.toml -o shape.csv >&-").status, 0);
@@ -46,7 +46,7 @@ TEST_F(Output, ThatIsLostOnStandardOutputIsAnError) {
   // SIGXFSZ would end the process by a signal; the file keeps its content.
   const Outcome limited = bash("ulimit -f 1; $dlo solve cable.toml --samples 9999 -o shape.csv");
   EXPECT_EQ(limited.status, 5);
-  EXPECT_TRUE(says(limited.err, {"shape.csv: cannot be written (File too large)"}));
+  EXPECT_TRUE(has_all(limited.err, {"shape.csv: cannot be written (File too large)"}));
   EXPECT_EQ(read(path("shape.csv")).substr(0, 8), "x,y,z,s\n");
   EXPECT_EQ(files(), (std::vector<std::string>{"cable.toml", "mine.toml", "shape.csv"}));
 }
@@ -167,7 +167,7 @@ TEST_F(Output, AnInputIsNeverWrittenOver) {
                  {"twice", "written twice"});
   const Outcome appended = bash("$dlo solve scene.toml >>scene.toml");
   EXPECT_EQ(appended.status, 2);
-  EXPECT_TRUE(says(appended.err, {"standard output"}));
+  EXPECT_TRUE(has_all(appended.err, {"standard output"}));
   EXPECT_EQ(read(scene), text);
   // Files that a benchmark set names, and files that its scenes name.
   write("shape.csv",
@@ -262,8 +262,8 @@ TEST_F(Output, OutOfMemoryIsALineAndAStatus) {
 
 TEST_F(Output, OutOfThreadsIsALineAndAStatus) {
   // The limit of threads does not apply to root, so root runs the command as another user.
-  const std::string nobody = ::geteuid() == 0 ? "setpriv --reuid=65534 --clear-groups " : "";
-  const std::string limited = nobody + "prlimit --nproc=0 $dlo ";
+  const std::string unprivileged = ::geteuid() == 0 ? "setpriv --reuid=65534 --clear-groups " : "";
+  const std::string limited = unprivileged + "prlimit --nproc=0 $dlo ";
   if (bash(limited + "solve " + steel() + " >/dev/null").status != 0) {
     GTEST_SKIP() << "threads cannot be limited, or others may not read here";
   }

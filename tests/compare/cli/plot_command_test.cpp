@@ -79,7 +79,7 @@ TEST_F(PlotCommand, DrawsASceneOfAnyName) {
     if (std::string_view(name).starts_with("'\\")) {
       key = std::string("name = '''\n") + name + "'''\n";
     }
-    const std::string drawn = said("solve " + scene(key + rest) + " --plot " + path("n.svg"));
+    const std::string drawn = output_of("solve " + scene(key + rest) + " --plot " + path("n.svg"));
     std::string picture = read(path("n.svg"));
     for (const std::string around : {"<![CDATA[", "]]>"}) {
       // Removes the delimiters of CDATA sections.
@@ -113,7 +113,7 @@ TEST_F(PlotCommand, CompareReportsEachScene) {
   EXPECT_THAT(page, HasSubstr("<p class=\"badge pass\">"));
   EXPECT_THAT(page, HasSubstr("largest part: law"));
   EXPECT_THAT(page, HasSubstr("a&lt;b&gt;"));
-  EXPECT_TRUE(test::says_none(page, {"<script", "a<b>", "src=\"http", "href=\"http", "url("}));
+  EXPECT_TRUE(test::has_none(page, {"<script", "a<b>", "src=\"http", "href=\"http", "url("}));
   EXPECT_THAT(page, HasSubstr("<svg role=\"img\""));
   expect_error(command + " --report " + gentle, 2, {"is read too"});
 }

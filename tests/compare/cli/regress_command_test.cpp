@@ -13,8 +13,8 @@
 
 namespace {
 
-using dlo::test::says;
-using dlo::test::says_none;
+using dlo::test::has_all;
+using dlo::test::has_none;
 
 class RegressCommand : public dlo::test::Command {
  protected:
@@ -51,12 +51,12 @@ TEST_F(RegressCommand, MayTolerateAShareOfTheDeflection) {
   const double deflection = json_of(check).at("deflection_m").get<double>() / 0.5;
   const double tip =
       json_of(arguments_ + steel()).at("cases")[0].at("measured").at("tip_over_length");
-  const auto grown_by = [&](double shares_of_deflection) {
+  const auto failures_at = [&](double shares_of_deflection) {
     set("tip_over_length", std::to_string(tip - shares_of_deflection * deflection));
     return run(arguments_ + steel() + " --relative 0 --tolerance '5% of deflection'").status;
   };
-  EXPECT_EQ(grown_by(0.049), 0);
-  EXPECT_EQ(grown_by(0.051), 1);
+  EXPECT_EQ(failures_at(0.049), 0);
+  EXPECT_EQ(failures_at(0.051), 1);
   expect_output(arguments_ + steel() + " --tolerance '2 mm'", 2,
                 {"2 mm: no share of the length", "5% of deflection"});
   EXPECT_EQ(run(arguments_ + steel() + " --tolerance 1% --absolute 1%").status, 2);
@@ -98,10 +98,10 @@ TEST_F(RegressCommand, AnEndThatIsAppendedToAProgramsPointsIsStatedHereAndByBenc
 TEST_F(RegressCommand, UpdateSaysWhatItDid) {
   EXPECT_EQ(run(arguments_ + steel() + " --update").out.substr(0, 5), "same ");
   const std::string both = run(arguments_ + steel() + " " + other + " --update").out;
-  EXPECT_TRUE(says_none(both, {"--update adds it"}));
-  EXPECT_TRUE(says(both, {"added "}));
+  EXPECT_TRUE(has_none(both, {"--update adds it"}));
+  EXPECT_TRUE(has_all(both, {"added "}));
   const std::string removed = run(arguments_ + steel() + " --update").out;
-  EXPECT_TRUE(says(removed, {"removed "}));
+  EXPECT_TRUE(has_all(removed, {"removed "}));
   set("rms_over_length", "0.3");
   EXPECT_EQ(run(arguments_ + steel() + " --update").out.substr(0, 8), "changed ");
 }
@@ -110,13 +110,13 @@ TEST_F(RegressCommand, AWorseErrorFailsAndABetterOneIsReported) {
   set("rms_over_length", "0.2");
   dlo::test::Outcome result = run(arguments_ + steel());
   EXPECT_EQ(result.status, 1);
-  EXPECT_TRUE(says(result.out, {"(baseline 20 %) worse"}));
+  EXPECT_TRUE(has_all(result.out, {"(baseline 20 %) worse"}));
   succeeds(arguments_ + steel() + " --relative 0.1");
   succeeds(arguments_ + steel() + " --absolute 0.02");
   set("rms_over_length", "0.3");
   result = run(arguments_ + steel());
   EXPECT_EQ(result.status, 0);
-  EXPECT_TRUE(says(result.out, {"1 better"}));
+  EXPECT_TRUE(has_all(result.out, {"1 better"}));
 }
 
 TEST_F(RegressCommand, AMissingBaselineOrCaseOnEitherSideFails) {
@@ -126,20 +126,20 @@ TEST_F(RegressCommand, AMissingBaselineOrCaseOnEitherSideFails) {
   expect_output(arguments_ + steel() + " " + other, 1, {"1 not in the baseline"});
   const dlo::test::Outcome changed = run(arguments_ + steel() + " --points 20");
   EXPECT_EQ(changed.status, 1);
-  EXPECT_TRUE(says(changed.out, {"N = 20 (baseline N = 16): RMS", "\n1 changed\n"}));
+  EXPECT_TRUE(has_all(changed.out, {"N = 20 (baseline N = 16): RMS", "\n1 changed\n"}));
 }
 
 TEST_F(RegressCommand, AnotherSceneOfTheSameNameIsChanged) {
   std::string text = read(steel());
-  ASSERT_TRUE(says(text, {"\n[rod]"}));
+  ASSERT_TRUE(has_all(text, {"\n[rod]"}));
   text.replace(text.find("\n[rod]"), 6, "\n[[load]]\nat = 0.5\nforce = [0, 1e-9, 0]\n[rod]");
   const dlo::test::Outcome result = run(arguments_ + scene(text));
   EXPECT_EQ(result.status, 1) << result.err;
   EXPECT_EQ(result.out.substr(0, 8), "changed ") << result.out;
-  EXPECT_TRUE(says(result.out, {"another than the baseline's: RMS"}));
+  EXPECT_TRUE(has_all(result.out, {"another than the baseline's: RMS"}));
   // A scene does not change if its length is written in another unit.
   std::string same = read(steel());
-  ASSERT_TRUE(says(same, {"\"50 cm\""}));
+  ASSERT_TRUE(has_all(same, {"\"50 cm\""}));
   same.replace(same.find("\"50 cm\""), 7, "0.5");
   succeeds(arguments_ + scene(same));
 }
@@ -193,7 +193,7 @@ TEST_F(RegressCommand, WritesJunitThatAnXmlReaderTakes) {
   EXPECT_EQ(junit("count(//testcase/failure)"), "2\n");
   EXPECT_EQ(junit("string(//testcase[failure/@type=\"not in the baseline\"]/@name)"),
             "<&>'\"   caf\xc3\xa9 (chain, law hooke, bookkeeping consistent, N = 16)\n");
-  EXPECT_TRUE(says(junit("string(//failure[@type=\"worse\"]/@message)"), {"tip"}));
+  EXPECT_TRUE(has_all(junit("string(//failure[@type=\"worse\"]/@message)"), {"tip"}));
 }
 
 }  // namespace

@@ -63,7 +63,7 @@ TEST_F(RunCommand, TheTimeLimitHoldsForTheWholeCommand) {
       dlo::test::level_clamp);
   const Outcome turns = run_line(limits + "solve " + helix + " --model exact --time-limit 1");
   EXPECT_EQ(turns.status, 3) << turns.err;
-  EXPECT_TRUE(dlo::test::says(turns.err, {"--time-limit 1"}));
+  EXPECT_TRUE(dlo::test::has_all(turns.err, {"--time-limit 1"}));
   std::string text = dlo::test::steel_rod + dlo::test::level_clamp;
   for (int i = 0; i < 90; ++i) {
     text += fmt::format("[[section]]\nfrom = {}\nto = {}\nbending_stiffness = {}\n", i / 200.0,
@@ -104,11 +104,11 @@ TEST(RedirectedOutputTest, HoldsForAllThreadsUntilItsEnd) {
     }
     dlo::cli::write_standard_output("outer");
     constexpr int lines = 1000;
-    const auto say = [] {
-      for (int i = 0; i < lines; ++i) dlo::cli::say("a line");
+    const auto print_message = [] {
+      for (int i = 0; i < lines; ++i) dlo::cli::print_message("a line");
     };
-    std::thread other(say);
-    say();
+    std::thread other(print_message);
+    print_message();
     other.join();
     EXPECT_EQ(err.size(), std::size_t{2 * lines} * std::string("dlo: a line\n").size());
   }

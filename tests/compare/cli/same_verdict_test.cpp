@@ -71,7 +71,7 @@ TEST_F(SameVerdict, OfFiftyShapesFromCommandLibraryAndMatchers) {
                            {.tolerance = compare::ShapeTolerance{.allowed_m = 0.01 * scene.length,
                                                                  .largest = largest},
                             .shape = {.modulus = compare::ModulusSearch::no}});
-        const compare::ShapeNear near =
+        const compare::ShapeTestOutcome near =
             (largest ? compare::shape_within : compare::shape_near)(shape, scene, 0.01);
         EXPECT_EQ(document["verdict"] == "pass", result.passes());
         EXPECT_EQ(document["reason"], result.judgement.reason);
@@ -88,7 +88,7 @@ TEST_F(SameVerdict, OfFiftyShapesFromCommandLibraryAndMatchers) {
 }
 
 /// Returns the document without the fields that depend on the tolerance.
-nlohmann::json facts(nlohmann::json document) {
+nlohmann::json without_tolerance_fields(nlohmann::json document) {
   for (const char* key : {"tolerance", "judged_m", "verdict", "reason", "explanations",
                           "superseded_by", "significant", "deflection_m", "hint"}) {
     document.erase(key);
@@ -112,7 +112,8 @@ TEST_F(SameVerdict, HasTheSameNumbersWhateverIsAllowed) {
     EXPECT_EQ(document(" --tolerance 1% --no-explanation")["verdict"], judged["verdict"]);
     for (const char* options : {"", " --tolerance 1% --no-explanation", " --tolerance 0.01%",
                                 " --tolerance 20% --measure max"}) {
-      EXPECT_EQ(facts(document(options)), facts(judged)) << options;
+      EXPECT_EQ(without_tolerance_fields(document(options)), without_tolerance_fields(judged))
+          << options;
     }
   }
 }

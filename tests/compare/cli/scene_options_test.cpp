@@ -24,7 +24,7 @@ class SceneOptions : public Command {
   /// `dlo solve` of the rod with more keys in its [force_model] and more options; without the time.
   json solved(const std::string& keys, const std::string& options) {
     const std::string result =
-        said(words({"solve", scene(short_rod + keys), "--format json", options}));
+        output_of(words({"solve", scene(short_rod + keys), "--format json", options}));
     json document = json::parse(result, nullptr, false);
     if (document.is_object()) document["solver"].erase("wall_s");
     return document;

@@ -13,8 +13,8 @@
 namespace {
 
 using dlo::test::Command;
+using dlo::test::has_all;
 using dlo::test::Outcome;
-using dlo::test::says;
 using nlohmann::json;
 
 const std::string back_bent_rod =
@@ -68,7 +68,8 @@ TEST_F(Command, ExplainSaysWhyThereIsNoN) {
                                    "[[obstacle]]\nnormal = [0, 1, 0]\n"
                                    "pose = [{ time = 0, point = [0, -0.03, 0] }, "
                                    "{ time = 2, point = [0, -0.2, 0] }]\n");
-  EXPECT_TRUE(says(said("solve " + moving + " --explain"), {"the rod touches an obstacle"}));
+  EXPECT_TRUE(
+      has_all(output_of("solve " + moving + " --explain"), {"the rod touches an obstacle"}));
 }
 
 TEST_F(Command, JsonHasThePlan) {
@@ -120,8 +121,8 @@ TEST_F(Command, SolveNearAFileIsTheEquilibriumBesideThatFile) {
   const double held = std::abs(near.at("grippers")[0].at("force_N")[0].get<double>());
   EXPECT_NEAR(held, 9.81 * (1.5 + 0.06 * (0.06 - tip)), 0.05);
   EXPECT_TRUE(json_of("solve " + path).at("contacts").empty());
-  EXPECT_TRUE(says(run("solve " + path + " --model exact --near " + over).err,
-                   {"--near: only model energy"}));
+  EXPECT_TRUE(has_all(run("solve " + path + " --model exact --near " + over).err,
+                      {"--near: only model energy"}));
   EXPECT_NE(run("solve " + path + " --all --near " + over).status, 0);
 }
 
@@ -138,18 +139,18 @@ TEST_F(Command, SolveReturnsAnEquilibriumByItsNumberInTheListOfAll) {
   const double pin = second.at("grippers")[0].at("force_N")[1];
   const double peg = second.at("contacts")[0].at("force_N")[1];
   EXPECT_NEAR(pin + peg, 9.81 * (1.5 + 0.06), 1e-6);
-  EXPECT_TRUE(says(run("solve " + path + " --equilibrium 2").out,
-                   {"\nobstacles\n  obstacle  force [N]\n         1  ["}));
+  EXPECT_TRUE(has_all(run("solve " + path + " --equilibrium 2").out,
+                      {"\nobstacles\n  obstacle  force [N]\n         1  ["}));
   const std::string beyond = std::to_string(all.size() + 1);
-  EXPECT_TRUE(says(run("solve " + path + " --equilibrium " + beyond).err,
-                   {"equilibrium " + beyond + ": the search found"}));
-  EXPECT_TRUE(says(run("solve " + path + " --model exact --equilibrium 2").err,
-                   {"--equilibrium: only model energy"}));
+  EXPECT_TRUE(has_all(run("solve " + path + " --equilibrium " + beyond).err,
+                      {"equilibrium " + beyond + ": the search found"}));
+  EXPECT_TRUE(has_all(run("solve " + path + " --model exact --equilibrium 2").err,
+                      {"--equilibrium: only model energy"}));
 }
 
 TEST_F(Command, SolveStatesTheStableEquilibriaThatItsSearchFound) {
   const std::string path = scene(dlo::test::rope_beside_peg);
-  EXPECT_TRUE(says(run("solve " + path).out, {"\nstable energies ", "\npassing starts "}));
+  EXPECT_TRUE(has_all(run("solve " + path).out, {"\nstable energies ", "\npassing starts "}));
   const json lowest = json_of("solve " + path);
   EXPECT_EQ(lowest.at("passing_starts"), 2);
   EXPECT_EQ(lowest.at("stable_energies_J"), json::array({lowest.at("energy_J").at("total")}));

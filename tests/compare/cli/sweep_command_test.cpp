@@ -13,7 +13,7 @@
 namespace {
 
 using dlo::test::csv_rows;
-using dlo::test::says;
+using dlo::test::has_all;
 
 class SweepCommand : public dlo::test::Command {
  protected:
@@ -51,7 +51,7 @@ TEST_F(SweepCommand, SaysHowManyScenesHaveNoResult) {
   const dlo::test::Outcome result =
       run("sweep " + steel() + " --vary rod.length=-1,1 -o " + path("a.csv"));
   EXPECT_EQ(result.status, 0);
-  EXPECT_TRUE(says(result.err, {"1 of 2 scenes"}));
+  EXPECT_TRUE(has_all(result.err, {"1 of 2 scenes"}));
 }
 
 /// Returns points of an arc of a curvature [1/m] in the plane z = 0, 0.3 m long.
@@ -78,7 +78,7 @@ TEST_F(SweepCommand, ReadsTheFilesThatFieldsNameBesideTheScene) {
   write("move.csv", "time,x,y,z\n0,0,0,0\n1,0.1,0,0\n");
   write("far.csv", "time,x,y,z\n0,0,-1,0\n1,0,-1,0\n");
   const std::string file = write("files.toml", scene_with_files);
-  const auto rows = csv_rows(said("sweep " + file + " --vary rod.rest_shape=a.csv,b.csv"));
+  const auto rows = csv_rows(output_of("sweep " + file + " --vary rod.rest_shape=a.csv,b.csv"));
   ASSERT_EQ(rows.size(), 3U);
   EXPECT_EQ(rows[0][3], "tip_x_m");
   EXPECT_NEAR(std::stod(rows[1][3]), std::sin(0.3), 1e-5);

@@ -7,14 +7,15 @@
 namespace {
 
 using dlo::test::Command;
+using dlo::test::has_all;
+using dlo::test::has_none;
 using dlo::test::Outcome;
-using dlo::test::says;
-using dlo::test::says_none;
 
 class Terminal : public Command {
  protected:
   /// Returns the output of a successful command on a terminal.
-  [[nodiscard]] std::string seen(const std::string& environment, const std::string& arguments) {
+  [[nodiscard]] std::string terminal_output(const std::string& environment,
+                                            const std::string& arguments) {
     const std::string line = "env " + environment + " script -qec '" + std::string(DLO_COMMAND) +
                              " " + arguments + "' " + path("typescript") + " >/dev/null </dev/null";
     EXPECT_EQ(std::system(line.c_str()), 0) << line;
@@ -23,7 +24,7 @@ class Terminal : public Command {
 
   /// A long command shows `progress`, and none of it is left behind the last erasure.
   void expect_progress(const std::string& arguments, const std::string& progress) {
-    const std::string text = seen("TERM=xterm", arguments);
+    const std::string text = terminal_output("TERM=xterm", arguments);
     const std::size_t shown = text.find(progress);
     const std::size_t last = text.rfind(erased);
     ASSERT_NE(shown, std::string::npos) << arguments << text;
@@ -37,11 +38,11 @@ class Terminal : public Command {
 
 TEST_F(Terminal, ProgressIsShownAndErased) {
   const std::string grid = "sweep " + steel() + " --vary gamma=log:0.1:1:40 --threads 2 -o ";
-  const std::string text = seen("TERM=xterm", grid + path("a.csv"));
-  EXPECT_TRUE(says(text, {"sweep [", "100 %, 40 of 40", erased}));
+  const std::string text = terminal_output("TERM=xterm", grid + path("a.csv"));
+  EXPECT_TRUE(has_all(text, {"sweep [", "100 %, 40 of 40", erased}));
   // After the last erasure there is only script's own last line.
   const std::string rest = text.substr(text.rfind(erased) + 4);
-  EXPECT_TRUE(says_none(rest, {"sweep"}));
+  EXPECT_TRUE(has_none(rest, {"sweep"}));
   // The result is the same without a terminal, where there is no progress.
   const Outcome quiet = run(grid + path("b.csv"));
   EXPECT_EQ(quiet.err, "");
@@ -58,20 +59,20 @@ TEST_F(Terminal, LongCommandsShowProgressAndEraseIt) {
 }
 
 TEST_F(Terminal, ADumbTerminalGetsPlainText) {
-  const std::string text = seen("TERM=dumb", "compare " + steel() + " " + steel());
-  EXPECT_TRUE(says_none(text, {"\x1b"}));
+  const std::string text = terminal_output("TERM=dumb", "compare " + steel() + " " + steel());
+  EXPECT_TRUE(has_none(text, {"\x1b"}));
 }
 
 TEST_F(Terminal, ColoursAreForTerminalsThatWantThem) {
   succeeds("solve " + steel() + " --format csv -o " + path("s.csv"));
   const std::string check = "check " + steel() + " --tolerance 1% --shape " + path("s.csv");
   const std::string green = "\x1b[32mpass\x1b[0m";
-  EXPECT_TRUE(says(seen("TERM=xterm", check), {green}));
-  EXPECT_TRUE(says_none(seen("TERM=xterm NO_COLOR=1", check), {green}));
-  EXPECT_TRUE(says(seen("TERM=xterm NO_COLOR=", check), {green}));
-  EXPECT_TRUE(says_none(seen("TERM=dumb", check), {"\x1b"}));
-  EXPECT_TRUE(says_none(run(check).out, {"\x1b"}));
-  (void)seen("TERM=xterm", check + " -o " + path("check.txt"));
+  EXPECT_TRUE(has_all(terminal_output("TERM=xterm", check), {green}));
+  EXPECT_TRUE(has_none(terminal_output("TERM=xterm NO_COLOR=1", check), {green}));
+  EXPECT_TRUE(has_all(terminal_output("TERM=xterm NO_COLOR=", check), {green}));
+  EXPECT_TRUE(has_none(terminal_output("TERM=dumb", check), {"\x1b"}));
+  EXPECT_TRUE(has_none(run(check).out, {"\x1b"}));
+  (void)terminal_output("TERM=xterm", check + " -o " + path("check.txt"));
   EXPECT_EQ(read(path("check.txt")), run(check).out);
 }
 

@@ -14,8 +14,8 @@
 namespace {
 
 using dlo::test::Command;
+using dlo::test::has_all;
 using dlo::test::Outcome;
-using dlo::test::says;
 using nlohmann::json;
 
 class TrackCommand : public Command {
@@ -36,7 +36,7 @@ TEST_F(TrackCommand, TellsFramesAndEventsInEveryFormat) {
   EXPECT_EQ(document.at("events")[0].at("kind"), "contact");
   EXPECT_EQ(document.at("events")[0].at("obstacle"), 0);
   const std::string csv = run(track + " --every 4 --no-force --format csv").out;
-  EXPECT_TRUE(says(csv, {",1 tip,,"}));
+  EXPECT_TRUE(has_all(csv, {",1 tip,,"}));
 }
 
 /// Fixture with a wire whose clamp moves by a file next to the scene.
@@ -90,7 +90,7 @@ TEST_F(OutputsOverInputs, NoFileIsAmongTheFramesOfASeries) {
   expect_untouched(track("m_00001.toml", series), "move.csv", "is read too");
   // These names do not collide with frames: one has another stem, one has too few digits.
   std::filesystem::remove(path("m_00003.vtk"));
-  const std::string beside = said(track("m_00001.toml", series + " -o " + path("m_0001.vtk")));
+  const std::string beside = output_of(track("m_00001.toml", series + " -o " + path("m_0001.vtk")));
 }
 
 TEST_F(OutputsOverInputs, TwoOutputsThatAreNotThereYetMayNotBeOneFile) {
@@ -111,13 +111,13 @@ TEST_F(TrackCommand, StopsAtTheImpossibleWithStatusThreeAndWhatWasBefore) {
   const Outcome result = run(words(
       {"track", file, "--frame-rate 20 --no-force --dynamic --damping 0.01", "--format json"}));
   EXPECT_EQ(result.status, 3);
-  EXPECT_TRUE(says(result.err, {"stopped at 0.5 s"}));
+  EXPECT_TRUE(has_all(result.err, {"stopped at 0.5 s"}));
   const json document = json::parse(result.out);
   EXPECT_EQ(document.at("frames").size(), 10U);
   EXPECT_EQ(document.at("dynamic").at("stopped").at("time_s"), 0.5);
   EXPECT_EQ(document.at("dynamic").at("frames").size(), 10U);
   EXPECT_TRUE(
-      says(document.at("stopped").at("why").get<std::string>(), {"less than the 1 m of rod"}));
+      has_all(document.at("stopped").at("why").get<std::string>(), {"less than the 1 m of rod"}));
 }
 
 TEST_F(TrackCommand, OtherCommandsTakeTheSceneAtATime) {
@@ -171,7 +171,7 @@ TEST_F(TrackCommand, HasForcesOfObstaclesAtRestAndMoving) {
   EXPECT_NEAR(moving.at("force_N").at(1), rest.at(1), 0.1);
   EXPECT_GT(document.at("dynamic").at("frames").back().at("energy_J").at("lost"), 0);
   const std::string csv = run(track + " --every 20 --format csv").out;
-  EXPECT_TRUE(says(csv, {",obstacle_fx_1_N,", ",dynamic_obstacle_fz_1_N"}));
+  EXPECT_TRUE(has_all(csv, {",obstacle_fx_1_N,", ",dynamic_obstacle_fz_1_N"}));
   EXPECT_TRUE(dlo::test::is_table(csv));
 }
 

@@ -11,9 +11,9 @@
 
 namespace {
 
+using dlo::test::has_all;
+using dlo::test::has_none;
 using dlo::test::Outcome;
-using dlo::test::says;
-using dlo::test::says_none;
 using nlohmann::json;
 using std::numbers::pi;
 
@@ -28,14 +28,14 @@ TEST_F(TwistCommand, ModelsThatHaveNoTwistSaySo) {
     const std::string solve = "solve " + wire() + " --law paper --model " + model;
     const Outcome text = run(solve);
     ASSERT_EQ(text.status, 0) << text.err;
-    EXPECT_TRUE(says(text.out, {"\nneglected ", " twist\n"}));
+    EXPECT_TRUE(has_all(text.out, {"\nneglected ", " twist\n"}));
     EXPECT_EQ(text.err, "");
     const json document = json_of(solve);
     EXPECT_EQ(document.at("neglected"), json({"twist"}));
     EXPECT_FALSE(document.contains("twist"));
     EXPECT_FALSE(document.at("grippers")[0].contains("axial_torque_Nm"));
     const Outcome csv = run(solve + " --format csv");
-    EXPECT_TRUE(says(csv.err, {"model " + model + " neglects the twist"}));
+    EXPECT_TRUE(has_all(csv.err, {"model " + model + " neglects the twist"}));
   }
 }
 
@@ -44,9 +44,9 @@ TEST_F(TwistCommand, ModelsOfThePolygonHaveItWithTheLawHooke) {
   const double torque = rod.at("twist").at("parts")[0].at("torque_Nm").get<double>();
   for (const std::string model : {"chain", "force"}) {
     const std::string solve = "solve --points 60 --model " + model + " " + wire();
-    const std::string text = said(solve);
-    EXPECT_TRUE(says_none(text, {"neglected"}));
-    EXPECT_TRUE(says(text, {"\ntwist parts\n"}));
+    const std::string text = output_of(solve);
+    EXPECT_TRUE(has_none(text, {"neglected"}));
+    EXPECT_TRUE(has_all(text, {"\ntwist parts\n"}));
     const json document = json_of(solve);
     EXPECT_FALSE(document.contains("neglected"));
     const json& part = document.at("twist").at("parts")[0];
@@ -63,13 +63,13 @@ TEST_F(TwistCommand, CommandsThatUseThemSaySo) {
       "compare --no-modulus --law paper --format csv ",
       "regress --update --law paper --baseline " + path("b.toml") + " "};
   for (const std::string& command : commands) {
-    EXPECT_TRUE(says(run(command + wire()).err, {note})) << command;
+    EXPECT_TRUE(has_all(run(command + wire()).err, {note})) << command;
   }
   // The stability map and tracking neglect twist with any bending law.
   const std::string map = "stability --map cF-cc --columns 2 --rows 4 --map-steps 500 ";
-  EXPECT_TRUE(says(run(map + wire()).err, {"the grippers hold twist, which the map neglects"}));
-  EXPECT_TRUE(says(run("bench --seconds 0.1 --repeats 1 " + wire()).err,
-                   {"the grippers hold twist, which tracking by the force model neglects"}));
+  EXPECT_TRUE(has_all(run(map + wire()).err, {"the grippers hold twist, which the map neglects"}));
+  EXPECT_TRUE(has_all(run("bench --seconds 0.1 --repeats 1 " + wire()).err,
+                      {"the grippers hold twist, which tracking by the force model neglects"}));
 }
 
 TEST_F(TwistCommand, AComparisonSaysThatTheForceModelHasNone) {
@@ -85,7 +85,7 @@ TEST_F(TwistCommand, TheEnergyModelGivesTorqueAndEnergyOfTheTwist) {
   const json document = json_of("solve " + wire());
   EXPECT_FALSE(document.contains("neglected"));
   EXPECT_TRUE(document.at("one_branch_followed").get<bool>());
-  EXPECT_TRUE(says(said("solve " + wire()), {"others with these turns may be lower"}));
+  EXPECT_TRUE(has_all(output_of("solve " + wire()), {"others with these turns may be lower"}));
   const json& part = document.at("twist").at("parts")[0];
   // The wire bends out of its plane, which converts a part of the prescribed half turn into writhe.
   const double angle = part.at("angle_rad").get<double>();

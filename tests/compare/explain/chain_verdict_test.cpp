@@ -25,7 +25,7 @@ using Eigen::Matrix3Xd;
 using Eigen::Vector3d;
 
 /// Returns the lengths of so many equal segments of a metre.
-std::vector<double> equal(int segments) {
+std::vector<double> equal_segments(int segments) {
   return std::vector<double>(static_cast<std::size_t>(segments), 1.0 / segments);
 }
 
@@ -38,17 +38,19 @@ TEST(Explanation, AChainOfHingesIsRightInItsOwnWay) {
     const double h = 1.0 / segments;
     for (const bool welded : {false, true}) {
       const ShapeJudgement whole =
-          judged(scene, made(hinged_chain(equal(segments), h, 1, welded))).judgement;
+          judge_shape(scene, file_shape(hinged_chain(equal_segments(segments), h, 1, welded)))
+              .judgement;
       EXPECT_TRUE(whole.passes()) << whole.reason;
-      EXPECT_TRUE(
-          says(whole.reason, {welded ? "welded" : "with a hinge at the clamp", "discretisation"}));
+      EXPECT_TRUE(has_all(whole.reason,
+                          {welded ? "welded" : "with a hinge at the clamp", "discretisation"}));
     }
     std::vector<double> half(static_cast<std::size_t>(segments) + 1, h);
     half.front() = half.back() = h / 2;
-    const JudgedShape middle = judged(scene, made(hinged_chain(half, h, 1, true)));
+    const JudgedShape middle = judge_shape(scene, file_shape(hinged_chain(half, h, 1, true)));
     EXPECT_TRUE(middle.judgement.passes()) << middle.judgement.reason;
     EXPECT_TRUE(middle.explanations.empty());  // near the rod itself
-    expect_named("half as stiff", scene, made(hinged_chain(equal(segments), h, 0.5, false)),
+    expect_cause("half as stiff", scene,
+                 file_shape(hinged_chain(equal_segments(segments), h, 0.5, false)),
                  {"with a hinge at the clamp", "springs of 0.", "times EI/h"});
   }
 }
@@ -57,7 +59,7 @@ TEST(Explanation, AChainOfHingesIsRightInItsOwnWay) {
 // are found.
 TEST(Explanation, TheVerdictKnowsChainsWithoutAnyExplanation) {
   const Scene scene = clamped();
-  const MeasuredShape right = made(hinged_chain(equal(20), 0.05, 1, false));
+  const MeasuredShape right = file_shape(hinged_chain(equal_segments(20), 0.05, 1, false));
   const ShapeCheck check = check_shape(scene, right, {.modulus = ModulusSearch::no});
   for (const bool largest : {false, true}) {
     const ShapeTolerance tolerance{.allowed_m = 0.01, .largest = largest};
@@ -67,7 +69,7 @@ TEST(Explanation, TheVerdictKnowsChainsWithoutAnyExplanation) {
     EXPECT_EQ(with_explanation(alone, explain_shape(scene, right, check, {}), tolerance).reason,
               alone.reason);
   }
-  const MeasuredShape soft = made(hinged_chain(equal(20), 0.05, 0.8, false));
+  const MeasuredShape soft = file_shape(hinged_chain(equal_segments(20), 0.05, 0.8, false));
   const ShapeCheck soft_check = check_shape(scene, soft, {.modulus = ModulusSearch::no});
   const ShapeJudgement alone = judge_as_chain(scene, soft_check, {.allowed_m = 1e-3}).judgement;
   EXPECT_FALSE(alone.passes());
@@ -82,9 +84,10 @@ TEST(Explanation, TheVerdictKnowsChainsWithoutAnyExplanation) {
 TEST(Explanation, AChainsSpringsAreCalledByTheirLaw) {
   Scene rope = clamped();
   rope.scale_modulus(0.2);
-  const JudgedShape outcome = judged(rope, made(hinged_chain(equal(20), 0.05, 0.2, true)));
+  const JudgedShape outcome =
+      judge_shape(rope, file_shape(hinged_chain(equal_segments(20), 0.05, 0.2, true)));
   EXPECT_TRUE(outcome.judgement.passes()) << outcome.judgement.reason;
-  EXPECT_TRUE(says(outcome.judgement.reason, {"its springs EI/h and linear in the angle"}));
+  EXPECT_TRUE(has_all(outcome.judgement.reason, {"its springs EI/h and linear in the angle"}));
 }
 
 // A chain that is clamped in the middle of a segment is nearer to the rod than other chains; a
@@ -93,10 +96,10 @@ TEST(Explanation, AChainClampedInTheMiddleOfASegmentIsKnown) {
   std::vector<double> lengths(11, 0.1);
   lengths.front() = lengths.back() = 0.05;
   const Matrix3Xd right = hinged_chain(lengths, 0.1, 1, true);
-  const JudgedShape outcome = judged(clamped(), made(right), 0.002);
+  const JudgedShape outcome = judge_shape(clamped(), file_shape(right), 0.002);
   ASSERT_FALSE(outcome.explanations.empty());
   const Explanation& best = outcome.explanations.front();
-  EXPECT_TRUE(says(best.cause, {"in the middle of a segment"}));
+  EXPECT_TRUE(has_all(best.cause, {"in the middle of a segment"}));
   EXPECT_LT(best.rms_m, 1e-4);
   for (const Explanation& other : outcome.explanations) {
     if (other.cause.find("a chain of") == std::string::npos ||
@@ -109,16 +112,17 @@ TEST(Explanation, AChainClampedInTheMiddleOfASegmentIsKnown) {
 
 // Only the tip of the chain is wrong: its RMS deviation passes, its largest deviation does not.
 TEST(Explanation, AChainIsHeldAgainstTheMeasureThatWasAsked) {
-  Matrix3Xd points = hinged_chain(equal(20), 0.05, 1, false);
+  Matrix3Xd points = hinged_chain(equal_segments(20), 0.05, 1, false);
   points.rightCols<1>() += Vector3d(0.003, 0.0045, 0);
-  EXPECT_TRUE(judged(clamped(), made(points)).judgement.passes());
-  EXPECT_FALSE(judged(clamped(), made(points), 0.01, true).judgement.passes());
+  EXPECT_TRUE(judge_shape(clamped(), file_shape(points)).judgement.passes());
+  EXPECT_FALSE(judge_shape(clamped(), file_shape(points), 0.01, true).judgement.passes());
 }
 
 /// Returns the result of check() without E*.
-CheckResult checked(const Scene& scene, const Matrix3Xd& points,
-                    Explaining explaining = Explaining::yes, double allowed_m = 0.01) {
-  return check(scene, made(points),
+CheckResult check_without_modulus(const Scene& scene, const Matrix3Xd& points,
+                                  Explaining explaining = Explaining::yes,
+                                  double allowed_m = 0.01) {
+  return check(scene, file_shape(points),
                {.tolerance = ShapeTolerance{.allowed_m = allowed_m},
                 .explaining = explaining,
                 .shape = {.modulus = ModulusSearch::no}});
@@ -128,10 +132,10 @@ CheckResult checked(const Scene& scene, const Matrix3Xd& points,
 // length of its segments is that of the rod divided by their number.
 TEST(ChainVerdict, NeedsPointsThatAreAsLongAsTheRod) {
   const Scene scene = clamped();
-  const Matrix3Xd chain = hinged_chain(equal(32), 1.0 / 32, 1, false);
-  ASSERT_TRUE(checked(scene, chain).passes());
+  const Matrix3Xd chain = hinged_chain(equal_segments(32), 1.0 / 32, 1, false);
+  ASSERT_TRUE(check_without_modulus(scene, chain).passes());
   for (const double factor : {1e-6, 1e-3, 0.01, 0.1, 0.5, 0.9, 1.1, 100.0}) {
-    const CheckResult result = checked(scene, factor * chain, Explaining::no);
+    const CheckResult result = check_without_modulus(scene, factor * chain, Explaining::no);
     EXPECT_EQ(result.judgement.verdict, ShapeVerdict::fail)
         << factor << ": " << result.judgement.reason;
   }
@@ -142,14 +146,14 @@ TEST(ChainVerdict, NeedsPointsThatAreAsLongAsTheRod) {
 TEST(ChainVerdict, NeedsAsMuchOfTheRodAsIsAsked) {
   const Scene scene = clamped();
   const ShapeTolerance tolerance{.allowed_m = 0.005};
-  Matrix3Xd chain = hinged_chain(equal(60), 1.0 / 60, 1, false);
+  Matrix3Xd chain = hinged_chain(equal_segments(60), 1.0 / 60, 1, false);
   const auto compared = [&] {
-    return check_shape(scene, made(chain), {.modulus = ModulusSearch::no});
+    return check_shape(scene, file_shape(chain), {.modulus = ModulusSearch::no});
   };
   ShapeCheck right = compared();
   ASSERT_FALSE(judge(right, tolerance).passes());
   EXPECT_TRUE(judge_as_chain(scene, right, tolerance).judgement.passes());
-  right.seen_share = 0.4;
+  right.observed_share = 0.4;
   EXPECT_FALSE(judge_as_chain(scene, right, tolerance).judgement.passes());
   for (Eigen::Index i = 1; i < chain.cols(); ++i) chain(2, i) = i % 2 == 0 ? 1e-3 : -1e-3;
   ShapeCheck wavy = compared();
@@ -162,16 +166,16 @@ TEST(ChainVerdict, NeedsAsMuchOfTheRodAsIsAsked) {
 // The unit is named, whichever one the file was read in.
 TEST(ChainVerdict, AFileReadInAnotherUnitFailsWithTheUnitAsCause) {
   const Scene scene = clamped();
-  const Matrix3Xd chain = hinged_chain(equal(32), 1.0 / 32, 1, false);
+  const Matrix3Xd chain = hinged_chain(equal_segments(32), 1.0 / 32, 1, false);
   for (const double unit : {1e-6, 1e-3, 0.01}) {
-    MeasuredShape shape = made(unit * chain);
+    MeasuredShape shape = file_shape(unit * chain);
     shape.unit = unit;
     const CheckResult result = check(
         scene, shape,
         {.tolerance = ShapeTolerance{.allowed_m = 0.02}, .shape = {.modulus = ModulusSearch::no}});
     EXPECT_EQ(result.judgement.verdict, ShapeVerdict::fail);
     ASSERT_FALSE(result.explanations.empty());
-    EXPECT_TRUE(says(result.explanations.front().cause, {"the file is in metres, not in "}));
+    EXPECT_TRUE(has_all(result.explanations.front().cause, {"the file is in metres, not in "}));
   }
 }
 
@@ -179,7 +183,7 @@ TEST(ChainVerdict, AFileReadInAnotherUnitFailsWithTheUnitAsCause) {
 // from the rod on the other side that shorter segments would reduce. The bound of `plan` holds for
 // segments that a clamp holds in the middle.
 TEST(ChainVerdict, AChainThatDoesNotConvergeToTheRodIsNone) {
-  const Scene scene = arch(0.05);
+  const Scene scene = clamped_arch(0.05);
   const energy_model::Equilibrium rod = solve_reference(scene, Model::energy);
   std::vector<double> half_at_clamps = {0};
   for (int i = 0; i < 29; ++i) half_at_clamps.push_back((i + 0.5) / 29);
@@ -192,7 +196,7 @@ TEST(ChainVerdict, AChainThatDoesNotConvergeToTheRodIsNone) {
   for (const Case& each : {Case{ChainClamp::welded, equal_arc_lengths(1, 31), 0.005},
                            Case{ChainClamp::middle, half_at_clamps, 0.0005}}) {
     SCOPED_TRACE(each.allowed_m);
-    OwnPolygon like;
+    CandidateChain like;
     like.clamp = each.clamp;
     Shape start = {each.arc_length, {}};
     start.points = rod.sample(start.arc_length).points;
@@ -200,7 +204,8 @@ TEST(ChainVerdict, AChainThatDoesNotConvergeToTheRodIsNone) {
     const std::optional<Shape> chain = chain_at_rest(scene, start, like);
     ASSERT_TRUE(chain);
     const ShapeTolerance tolerance{.allowed_m = each.allowed_m};
-    ShapeCheck compared = check_shape(scene, made(chain->points), {.modulus = ModulusSearch::no});
+    ShapeCheck compared =
+        check_shape(scene, file_shape(chain->points), {.modulus = ModulusSearch::no});
     ASSERT_FALSE(judge(compared, tolerance).passes());
     EXPECT_TRUE(judge_as_chain(scene, compared, tolerance).judgement.passes());
     const energy_model::Equilibrium right = compared.rod;
@@ -229,9 +234,9 @@ TEST(ChainVerdict, AChainMayBeStrainedBetweenItsGrippers) {
   Scene coarse = scene;
   coarse.force_model.points = 13;
   Matrix3Xd points = solve(coarse, Model::chain).shape.points;
-  const double away = checked(scene, points, Explaining::no).judgement.judged_m;
+  const double away = check_without_modulus(scene, points, Explaining::no).judgement.judged_m;
   points.rightCols<1>() += 1e-4 * (points.col(points.cols() - 1) - points.col(points.cols() - 2));
-  const CheckResult result = checked(scene, points, Explaining::no, away / 2);
+  const CheckResult result = check_without_modulus(scene, points, Explaining::no, away / 2);
   EXPECT_NE(result.judgement.verdict, ShapeVerdict::fail) << result.judgement.reason;
 }
 
@@ -240,12 +245,12 @@ TEST(ChainVerdict, AChainOfAnotherOrderIsTooCoarse) {
   Scene rope = clamped();
   rope.scale_modulus(0.5 * 9.81 / 1000);
   for (const int segments : {6, 8}) {
-    const Shape start = {equal_arc_lengths(1, segments + 1), right_file(rope, segments + 1).points};
+    const Shape start = {equal_arc_lengths(1, segments + 1), exact_file(rope, segments + 1).points};
     const std::optional<Shape> chain = chain_at_rest(rope, start, {});
     ASSERT_TRUE(chain);
-    const CheckResult result = checked(rope, chain->points, Explaining::no);
+    const CheckResult result = check_without_modulus(rope, chain->points, Explaining::no);
     EXPECT_EQ(result.judgement.verdict, ShapeVerdict::undetermined);
-    EXPECT_TRUE(says(result.judgement.reason, {"too coarse to judge", "mm = ", "segments"}));
+    EXPECT_TRUE(has_all(result.judgement.reason, {"too coarse to judge", "mm = ", "segments"}));
   }
 }
 
@@ -256,27 +261,28 @@ TEST(ChainVerdict, AChainWithThePapersLawFailsWithItAsCause) {
     scene.force_model.points = 25;
     scene.force_model.law = BendingLaw::paper;
     scene.force_model.bookkeeping = bookkeeping;
-    const CheckResult result = checked(scene, solve(scene, Model::chain).shape.points);
+    const CheckResult result =
+        check_without_modulus(scene, solve(scene, Model::chain).shape.points);
     EXPECT_EQ(result.judgement.verdict, ShapeVerdict::fail);
     ASSERT_FALSE(result.explanations.empty());
-    EXPECT_TRUE(says(result.explanations.front().cause, {"the paper's joint law"}));
+    EXPECT_TRUE(has_all(result.explanations.front().cause, {"the paper's joint law"}));
   }
 }
 
 // A file of body positions has the begins of all segments, but not the end of the last segment.
 TEST(ChainVerdict, AMissingLastEndIsAppended) {
-  const Matrix3Xd chain = hinged_chain(equal(20), 0.05, 1, false);
-  const CheckResult result = checked(clamped(), chain.leftCols(20));
+  const Matrix3Xd chain = hinged_chain(equal_segments(20), 0.05, 1, false);
+  const CheckResult result = check_without_modulus(clamped(), chain.leftCols(20));
   EXPECT_TRUE(result.passes()) << result.judgement.reason;
   ASSERT_EQ(result.notes.size(), 1U);
-  EXPECT_TRUE(says(result.notes[0], {"20 points", "end of the last segment is appended"}));
+  EXPECT_TRUE(has_all(result.notes[0], {"20 points", "end of the last segment is appended"}));
   EXPECT_LT((result.check.alignment.shape.points.col(20) - chain.col(20)).norm(), 1e-4);
   // Nothing is appended if the first point of a chain is missing, or if so many points are given
   // that the polyline is as long as the rod.
-  EXPECT_TRUE(checked(clamped(), chain.rightCols(20)).notes.empty());
-  const Matrix3Xd rod = right_file(clamped(), 101).points;
-  EXPECT_TRUE(checked(clamped(), rod).notes.empty());
-  EXPECT_EQ(checked(clamped(), rod.leftCols(100)).notes.size(), 1U);
+  EXPECT_TRUE(check_without_modulus(clamped(), chain.rightCols(20)).notes.empty());
+  const Matrix3Xd rod = exact_file(clamped(), 101).points;
+  EXPECT_TRUE(check_without_modulus(clamped(), rod).notes.empty());
+  EXPECT_EQ(check_without_modulus(clamped(), rod.leftCols(100)).notes.size(), 1U);
 }
 
 // A file without its last point is extended straight, but the chain has a joint before that point.
@@ -285,9 +291,9 @@ TEST(ChainVerdict, AMissingLastPointIsTheChains) {
   Shape file{equal_arc_lengths(1, 9), chain};
   file.points.col(8) = 2 * chain.col(7) - chain.col(6);
   EXPECT_GT((file.points.col(8) - chain.col(8)).norm(), 3e-4);
-  for (const Springs springs : {Springs::as_the_rod, Springs::fitted}) {
-    const std::vector<OwnPolygon> found =
-        own_polygons(clamped(), file, springs, energy_model::JointLaw::linear, LastPoint::missing);
+  for (const Springs springs : {Springs::rod_stiffness, Springs::fitted}) {
+    const std::vector<CandidateChain> found = candidate_chains(
+        clamped(), file, springs, energy_model::JointLaw::linear, LastPoint::missing);
     ASSERT_FALSE(found.empty());
     EXPECT_LT(found.front().max_m, 1e-5);
     EXPECT_LT((found.front().rest.points - chain).colwise().norm().maxCoeff(), 1e-5);
@@ -296,37 +302,37 @@ TEST(ChainVerdict, AMissingLastPointIsTheChains) {
 
 // A chain whose second point is at the clamp would have a first segment of length 0.
 TEST(ChainVerdict, APointBehindTheClampIsNoChainsPoint) {
-  const Matrix3Xd chain = hinged_chain(equal(20), 0.05, 0.5, true);
+  const Matrix3Xd chain = hinged_chain(equal_segments(20), 0.05, 0.5, true);
   Matrix3Xd points(3, 22);
   points << Vector3d(-0.03, -0.01, 0), chain;
-  EXPECT_EQ(checked(clamped(), points).judgement.verdict, ShapeVerdict::fail);
+  EXPECT_EQ(check_without_modulus(clamped(), points).judgement.verdict, ShapeVerdict::fail);
 }
 
 // One measured point has three coordinates, so a cause with three fitted numbers always fits it.
 TEST(ChainVerdict, OneMeasuredPointIsJudgedByItsDistance) {
-  const Vector3d tip = right_file(clamped(), 2).points.col(1);
+  const Vector3d tip = exact_file(clamped(), 2).points.col(1);
   Matrix3Xd points = Matrix3Xd::Zero(3, 2);
   points.col(1) = tip + Vector3d(0, 0.03, 0.04);
-  const CheckResult result = checked(clamped(), points);
+  const CheckResult result = check_without_modulus(clamped(), points);
   EXPECT_EQ(result.judgement.verdict, ShapeVerdict::fail);
   EXPECT_NEAR(result.judgement.judged_m, 0.05, 2e-3);
   for (const Explanation& cause : result.explanations) EXPECT_LE(cause.numbers, 1) << cause.cause;
   points.col(1) = tip + Vector3d(0, 0.003, 0.004);
-  EXPECT_LT(checked(clamped(), points).judgement.judged_m, 0.005 + 1e-9);
+  EXPECT_LT(check_without_modulus(clamped(), points).judgement.judged_m, 0.005 + 1e-9);
 }
 
 TEST(ChainVerdict, AFileThatPassesHasNoCauseAndNoHint) {
-  const Matrix3Xd chain = hinged_chain(equal(10), 0.1, 1, false);
+  const Matrix3Xd chain = hinged_chain(equal_segments(10), 0.1, 1, false);
   const CheckResult result =
-      check(clamped(), made(chain), {.tolerance = ShapeTolerance{.allowed_m = 0.01}});
+      check(clamped(), file_shape(chain), {.tolerance = ShapeTolerance{.allowed_m = 0.01}});
   EXPECT_TRUE(result.passes());
   EXPECT_TRUE(result.explanations.empty());
   EXPECT_TRUE(result.check.hint.empty()) << result.check.hint;
   // E* would describe the discretisation error, not the material; the cause "a chain" supersedes
   // it.
   ASSERT_TRUE(is_identified(result.check.effective_modulus.optimum));
-  ASSERT_TRUE(result.supersedes_modulus);
-  EXPECT_TRUE(says(result.supersedes_modulus->cause, {"a chain of 10 segments"}));
+  ASSERT_TRUE(result.superseding_cause);
+  EXPECT_TRUE(has_all(result.superseding_cause->cause, {"a chain of 10 segments"}));
 }
 
 }  // namespace

@@ -101,7 +101,7 @@ TEST(JointCauses, TwoThingsThatAreWrongWithAFileAreBothNamed) {
   for (const auto& pair : pairs) {
     for (int i = 0; i < 5; ++i, ++tried) {
       const Scene scene = scene_of(tried % 3);
-      MeasuredShape shape = right_file(scene, 9 + static_cast<int>(random() % 8));
+      MeasuredShape shape = exact_file(scene, 9 + static_cast<int>(random() % 8));
       for (const Fault& fault : pair) shape.points = fault.apply(shape.points, random);
       const std::vector<Explanation> found = explained(scene, shape);
       const std::string best = found.empty() ? "nothing" : found.front().cause;
@@ -124,11 +124,12 @@ TEST(JointCauses, AMovedFileWithZUpIsCalledThat) {
   const Scene scene = scene_of(0);
   for (const double height : {1.0, 0.3}) {
     const MeasuredShape shape =
-        made((to_z_up() * right_file(scene).points).colwise() + Vector3d(0, 0, height));
+        file_shape((to_z_up() * exact_file(scene).points).colwise() + Vector3d(0, 0, height));
     const std::vector<Explanation> found = explained(scene, shape);
     ASSERT_FALSE(found.empty());
-    EXPECT_TRUE(says(found.front().cause, {"z is up in the file",
-                                           fmt::format("[0, {:.4g}, 0] mm away", -1e3 * height)}));
+    EXPECT_TRUE(
+        has_all(found.front().cause,
+                {"z is up in the file", fmt::format("[0, {:.4g}, 0] mm away", -1e3 * height)}));
     EXPECT_LT(found.front().rms_m, 1e-4 * scene.length);
   }
 }
@@ -139,15 +140,16 @@ TEST(JointCauses, AChainOfBodiesWhoseLastEndIsMissingIsCalledThat) {
   const Matrix3Xd chain =
       test::hinged_chain(std::vector<double>(segments, 1.0 / segments), 1.0 / segments, 1, false)
           .leftCols(segments);
-  const std::vector<Explanation> found = explained(clamped(), made(chain));
+  const std::vector<Explanation> found = explained(clamped(), file_shape(chain));
   ASSERT_FALSE(found.empty());
   EXPECT_EQ(found.front().cause,
             "a chain of 8 segments with a hinge at the clamp, its last end missing as in MuJoCo's "
             "xpos, its springs EI/h and linear in the angle");
   EXPECT_LT(found.front().rms_m, 1e-3);
-  const std::vector<Explanation> both = explained(clamped(), made(to_z_up() * chain));
+  const std::vector<Explanation> both = explained(clamped(), file_shape(to_z_up() * chain));
   ASSERT_FALSE(both.empty());
-  EXPECT_TRUE(says(both.front().cause, {"z is up in the file", "a chain of 8 segments", "xpos"}));
+  EXPECT_TRUE(
+      has_all(both.front().cause, {"z is up in the file", "a chain of 8 segments", "xpos"}));
 }
 
 }  // namespace

@@ -25,7 +25,7 @@ inline compare::Scene clamped(const std::string& rod = "") {
 }
 
 /// Returns points as a shape read from a file.
-inline compare::MeasuredShape made(Eigen::Matrix3Xd points) {
+inline compare::MeasuredShape file_shape(Eigen::Matrix3Xd points) {
   compare::MeasuredShape shape;
   shape.file = "mine.csv";
   shape.points = std::move(points);
@@ -33,15 +33,15 @@ inline compare::MeasuredShape made(Eigen::Matrix3Xd points) {
 }
 
 /// Returns the rod of the energy model at equal arc lengths as a shape read from a file.
-inline compare::MeasuredShape right_file(const compare::Scene& scene, int count = 41) {
-  return made(compare::solve_reference(scene, compare::Model::energy)
-                  .sample(compare::equal_arc_lengths(scene.length, count))
-                  .points);
+inline compare::MeasuredShape exact_file(const compare::Scene& scene, int count = 41) {
+  return file_shape(compare::solve_reference(scene, compare::Model::energy)
+                        .sample(compare::equal_arc_lengths(scene.length, count))
+                        .points);
 }
 
 /// Returns an arch on two clamps that point up and down; it is stable if it is stiff, and otherwise
 /// falls out of its plane.
-inline compare::Scene arch(double stiffness) {
+inline compare::Scene clamped_arch(double stiffness) {
   return compare::parse_scene(
       "[rod]\nlength = 1\nmass_per_length = 0.5\nbending_stiffness = " + std::to_string(stiffness) +
           "\n[[gripper]]\nat = 0\nposition = [0, 0, 0]\ndirection = \"90 deg\"\n[[gripper]]\nat = "
@@ -58,8 +58,8 @@ struct JudgedShape {
 /// Judges a shape without a search for E*, and explains it if it fails.
 /// @param share    allowed deviation divided by the length [-]
 /// @param largest  whether the largest deviation is judged, not the RMS
-inline JudgedShape judged(const compare::Scene& scene, const compare::MeasuredShape& shape,
-                          double share = 0.01, bool largest = false) {
+inline JudgedShape judge_shape(const compare::Scene& scene, const compare::MeasuredShape& shape,
+                               double share = 0.01, bool largest = false) {
   const compare::ShapeCheckOptions options{.modulus = compare::ModulusSearch::no};
   const compare::ShapeCheck check = compare::check_shape(scene, shape, options);
   const compare::ShapeTolerance tolerance{.allowed_m = share * scene.length, .largest = largest};
@@ -74,17 +74,17 @@ inline JudgedShape judged(const compare::Scene& scene, const compare::MeasuredSh
 
 /// Expects that the shape fails, and that the best explanation contains these words and leaves less
 /// than a tenth of the tolerance.
-inline void expect_named(const std::string& what, const compare::Scene& scene,
+inline void expect_cause(const std::string& what, const compare::Scene& scene,
                          const compare::MeasuredShape& shape, const std::vector<std::string>& words,
                          double left_m = 1e-3) {
   SCOPED_TRACE(what);
-  const JudgedShape outcome = judged(scene, shape);
+  const JudgedShape outcome = judge_shape(scene, shape);
   EXPECT_FALSE(outcome.judgement.passes());
   ASSERT_FALSE(outcome.explanations.empty()) << outcome.judgement.reason;
   const compare::Explanation& best = outcome.explanations.front();
   for (const std::string& word : words) {
-    EXPECT_TRUE(says(best.cause, {word}));
-    EXPECT_TRUE(says(outcome.judgement.reason, {word}));
+    EXPECT_TRUE(has_all(best.cause, {word}));
+    EXPECT_TRUE(has_all(outcome.judgement.reason, {word}));
   }
   EXPECT_LT(best.rms_m, left_m);
 }

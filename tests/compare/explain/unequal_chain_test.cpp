@@ -63,20 +63,22 @@ Shape unequal_chain(const Moment& moment, double factor,
   return shape;
 }
 
-const OwnPolygon& welded(const std::vector<OwnPolygon>& chains) {
-  return *std::find_if(chains.begin(), chains.end(),
-                       [](const OwnPolygon& chain) { return chain.clamp == ChainClamp::welded; });
+const CandidateChain& welded(const std::vector<CandidateChain>& chains) {
+  return *std::find_if(chains.begin(), chains.end(), [](const CandidateChain& chain) {
+    return chain.clamp == ChainClamp::welded;
+  });
 }
 
 TEST(UnequalChain, EachJointHasHalfOfBothItsSegments) {
   const Scene scene = unequal_scene();
   const auto expect = [&](const Shape& shape, energy_model::JointLaw law) {
-    const std::vector<OwnPolygon> chains = own_polygons(scene, shape, Springs::as_the_rod);
+    const std::vector<CandidateChain> chains =
+        candidate_chains(scene, shape, Springs::rod_stiffness);
     ASSERT_FALSE(chains.empty());
     EXPECT_LT(welded(chains).rms_m, 1e-6);
     EXPECT_EQ(welded(chains).law, law);
-    EXPECT_TRUE(welded(chains).law_shows);
-    const std::vector<OwnPolygon> fitted = own_polygons(scene, shape, Springs::fitted);
+    EXPECT_TRUE(welded(chains).is_law_identified);
+    const std::vector<CandidateChain> fitted = candidate_chains(scene, shape, Springs::fitted);
     EXPECT_NEAR(welded(fitted).stiffness, 1, 1e-4);
   };
   expect(unequal_chain(test::linear_moment, 1), energy_model::JointLaw::linear);
@@ -88,8 +90,8 @@ TEST(UnequalChain, WrongSpringsAreNamedWithTheirFactor) {
   const Scene scene = unequal_scene();
   for (const double factor : {0.7, 1.4}) {
     const Shape shape = unequal_chain(test::linear_moment, factor);
-    EXPECT_GT(welded(own_polygons(scene, shape, Springs::as_the_rod)).rms_m, 1e-3);
-    const OwnPolygon found = welded(own_polygons(scene, shape, Springs::fitted));
+    EXPECT_GT(welded(candidate_chains(scene, shape, Springs::rod_stiffness)).rms_m, 1e-3);
+    const CandidateChain found = welded(candidate_chains(scene, shape, Springs::fitted));
     EXPECT_NEAR(found.stiffness, factor, 1e-4 * factor);
     EXPECT_LT(found.rms_m, 1e-6);
   }
@@ -118,7 +120,7 @@ TEST(UnequalChain, AYieldingFloorPushesEachSegmentInProportionToItsLength) {
   }
   ASSERT_LT(change, 1e-10);
   ASSERT_LT(shape.points.row(1).minCoeff(), -0.1);
-  EXPECT_LT(welded(own_polygons(scene, shape, Springs::as_the_rod)).rms_m, 1e-6);
+  EXPECT_LT(welded(candidate_chains(scene, shape, Springs::rod_stiffness)).rms_m, 1e-6);
 }
 
 }  // namespace

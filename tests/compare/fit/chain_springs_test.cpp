@@ -40,9 +40,9 @@ TEST(ChainSprings, OfAStiffRodWithALoadAtItsTipTheyAreThoseOfBeamTheory) {
     }
     const ChainSprings hinge = springs_of(scene, n).at(ChainClamp::hinge);
     // The search ends at steps of 1e-4.
-    EXPECT_NEAR(hinge.over_rod, square / product, 1e-4) << n;
+    EXPECT_NEAR(hinge.stiffness_ratio, square / product, 1e-4) << n;
     EXPECT_NEAR(hinge.segment_length, 1.0 / n, 1e-15);
-    EXPECT_NEAR(hinge.stiffness, hinge.over_rod * scene.bending_stiffness() * n, 1e-12);
+    EXPECT_NEAR(hinge.stiffness, hinge.stiffness_ratio * scene.bending_stiffness() * n, 1e-12);
   }
 }
 
@@ -54,7 +54,7 @@ TEST(ChainSprings, TheOrderInTheSegmentIsThatOfTheClamp) {
   const auto fine = springs_of(scene, 64);
   ASSERT_EQ(coarse.size(), 3);
   const auto excess = [](const auto& chains, ChainClamp clamp) {
-    return chains.at(clamp).over_rod - 1;
+    return chains.at(clamp).stiffness_ratio - 1;
   };
   EXPECT_GT(excess(fine, ChainClamp::hinge), 0);
   EXPECT_LT(excess(fine, ChainClamp::welded), 0);
@@ -124,7 +124,7 @@ TEST(ChainSprings, OfUnequalSegmentsAHalfAtTheClampIsHeldInTheMiddle) {
   const ChainSprings& middle = chains[2];
   ASSERT_EQ(middle.clamp, ChainClamp::middle);
   ASSERT_EQ(middle.joints.size(), 10);
-  const double EI = middle.over_rod * scene.bending_stiffness();
+  const double EI = middle.stiffness_ratio * scene.bending_stiffness();
   EXPECT_NEAR(middle.joints[0].stiffness * lengths[1] / EI, 1, 1e-3);
   EXPECT_NEAR(middle.joints[1].stiffness * (lengths[1] + lengths[2]) / 2 / EI, 1, 1e-3);
 }

@@ -68,7 +68,7 @@ TEST(ForceModelFit, FittedStiffnessOfThePaperLawIsTheBest) {
   const ForceModelFit fit = fit_force_model(scenes, scenes_of({4}, 20, BendingLaw::paper));
   ASSERT_EQ(fit.rules.size(), 4U);
   const RuleDeviations& fitted = rule_of(fit, StiffnessRule::fitted);
-  const RuleDeviations& alone = rule_of(fit, StiffnessRule::fitted_alone);
+  const RuleDeviations& alone = rule_of(fit, StiffnessRule::fitted_per_scene);
   EXPECT_EQ(fit.settings.c_b, fitted.c_b[0]);
   for (const RuleDeviations& rule : fit.rules) {
     double sum = 0;
@@ -79,7 +79,7 @@ TEST(ForceModelFit, FittedStiffnessOfThePaperLawIsTheBest) {
       sum += std::pow(rule.rms_over_length[i], 2);
       fitted_sum += std::pow(fitted.rms_over_length[i], 2);
     }
-    if (rule.rule != StiffnessRule::fitted_alone) {
+    if (rule.rule != StiffnessRule::fitted_per_scene) {
       EXPECT_LE(fitted_sum, sum) << to_string(rule.rule);
     }
   }
@@ -122,8 +122,8 @@ TEST(ForceModelFit, StretchBetweenTwoPinsIsComparedWithRigidSegments) {
   const double deeper = sag * strain / (2 * (1 - d));
   EXPECT_NEAR(fit.stretch_rms_over_length.front() / (std::sqrt(8.0 / 15) * deeper), 1, 0.05);
   EXPECT_LT(rule_of(fit, StiffnessRule::physical).rms_over_length.front(), 1e-4);
-  ASSERT_EQ(fit.why_missed().size(), 1U);
-  EXPECT_TRUE(test::says(fit.why_missed().front(), {"the given c_c stretches the rod"}));
+  ASSERT_EQ(fit.shortfall_reasons().size(), 1U);
+  EXPECT_TRUE(test::has_all(fit.shortfall_reasons().front(), {"the given c_c stretches the rod"}));
 }
 
 TEST(ForceModelFit, RefusesWhatCannotBeFitted) {

@@ -19,30 +19,30 @@ namespace {
 
 /// Statistics of fits to one rod.
 struct Tally {
-  int held = 0;         // intervals that contain the true value
-  int told = 0;         // fits that identify E
-  int correlated = 0;   // fits that report correlated errors
-  double farthest = 0;  // largest |log(E / truth)| of the fits that identify E
+  int held = 0;              // intervals that contain the true value
+  int identified_count = 0;  // fits that identify E
+  int correlated = 0;        // fits that report correlated errors
+  double farthest = 0;       // largest |log(E / truth)| of the fits that identify E
 };
 
-/// Counts the results of `draws` fits of `scene`, each to a new shape from seen(), against the true
-/// modulus.
+/// Counts the results of `draws` fits of `scene`, each to a new shape from measured(), against the
+/// true modulus.
 template <typename Seen>
-Tally tally_of(int draws, const Scene& scene, double truth, const Seen& seen,
-               const MaterialFitOptions& options = {}) {
+Tally fit_random_shapes(int draws, const Scene& scene, double truth, const Seen& measured,
+                        const MaterialFitOptions& options = {}) {
   Tally tally;
   for (int draw = 0; draw < draws; ++draw) {
-    const MaterialFit fit = fit_material({scene}, {seen()}, options);
+    const MaterialFit fit = fit_material({scene}, {measured()}, options);
     EXPECT_EQ(fit.youngs_modulus.value.has_value(), fit.not_identified.empty());
     EXPECT_TRUE(fit.correlation_was_tested);
-    tally.held += holds(fit.youngs_modulus, truth) ? 1 : 0;
+    tally.held += interval_contains(fit.youngs_modulus, truth) ? 1 : 0;
     if (fit.correlation) {
       ++tally.correlated;
       EXPECT_GE(fit.correlation->widening, 1);
       EXPECT_LE(fit.correlation->degrees_of_freedom, fit.degrees_of_freedom);
     }
     if (!fit.youngs_modulus.value) continue;
-    ++tally.told;
+    ++tally.identified_count;
     tally.farthest =
         std::max(tally.farthest, std::abs(std::log(*fit.youngs_modulus.value / truth)));
   }
@@ -66,7 +66,7 @@ TEST_P(MaterialFitCoverage, IntervalHoldsTheTruthInNineOfTenDraws) {
   const energy_model::Equilibrium exact = solve_reference(truth, Model::exact);
   std::mt19937 random(2024);
   constexpr int draws = test::sanitized ? 10 : 100;
-  const Tally tally = tally_of(
+  const Tally tally = fit_random_shapes(
       draws, scene, truth.material.youngs_modulus,
       [&] {
         const std::vector<double> s = uneven_arc_lengths(random, 7, 1);
@@ -81,7 +81,7 @@ TEST_P(MaterialFitCoverage, IntervalHoldsTheTruthInNineOfTenDraws) {
   EXPECT_LE(tally.correlated, 12);
   if (known) {
     EXPECT_LE(tally.held, 99);
-    EXPECT_EQ(tally.told, draws);
+    EXPECT_EQ(tally.identified_count, draws);
   }
 }
 
@@ -96,7 +96,7 @@ TEST(MaterialFit, IntervalHoldsTheTruthInNineOfTenDrawsOfAnUnknownFrameWithArcLe
   std::mt19937 random(77);
   constexpr int draws = test::sanitized ? 10 : 100;
   const std::vector<double> s = equal_arc_lengths(1, 31);
-  const Tally tally = tally_of(
+  const Tally tally = fit_random_shapes(
       draws, scene, 210e9,
       [&] {
         return MeasuredShape{
@@ -104,7 +104,7 @@ TEST(MaterialFit, IntervalHoldsTheTruthInNineOfTenDrawsOfAnUnknownFrameWithArcLe
             s};
       },
       {.pose = PoseFreedom::rigid});
-  EXPECT_EQ(tally.told, draws);
+  EXPECT_EQ(tally.identified_count, draws);
   if (test::sanitized) return;
   EXPECT_GE(tally.held, 90);
   EXPECT_LE(tally.held, 99);
@@ -119,11 +119,11 @@ TEST(MaterialFit, CorrelatedErrorsAreSaidAndWidenTheInterval) {
   for (const double length : {0.03, 0.2}) {
     std::mt19937 random(11);
     const std::vector<double> s = equal_arc_lengths(1, 41);
-    const Tally tally = tally_of(draws, scene, 210e9, [&] {
+    const Tally tally = fit_random_shapes(draws, scene, 210e9, [&] {
       return MeasuredShape{
           "seen", exact.sample(s).points + correlated_noise(s, 1e-3, length, random), {}};
     });
-    EXPECT_EQ(tally.told, draws);
+    EXPECT_EQ(tally.identified_count, draws);
     EXPECT_GE(tally.correlated, 0.9 * draws) << length;
     if (test::sanitized) continue;
     EXPECT_GE(tally.held, 0.85 * draws) << length;
@@ -165,9 +165,9 @@ TEST(MaterialFit, TheNoiseOfCorrelatedErrorsIsWhatTheyWere) {
   double told = 0;
   double left = 0;
   for (int draw = 0; draw < draws; ++draw) {
-    const MeasuredShape seen{"seen",
-                             exact.sample(s).points + correlated_noise(s, sigma, 0.1, random), s};
-    const MaterialFit fit = fit_material({scene}, {seen}, {.pose = PoseFreedom::translation});
+    const MeasuredShape measured{
+        "seen", exact.sample(s).points + correlated_noise(s, sigma, 0.1, random), s};
+    const MaterialFit fit = fit_material({scene}, {measured}, {.pose = PoseFreedom::translation});
     told += std::pow(fit.noise_m / sigma, 2) / draws;
     left += std::pow(fit.rms_m / sigma, 2) / 3 / draws;
   }

@@ -24,7 +24,7 @@ namespace {
 
 constexpr double one_degree = std::numbers::pi / 180;
 
-struct Hangings {
+struct Mountings {
   std::vector<Scene> scenes;
   std::vector<MeasuredShape> shapes;
 
@@ -33,14 +33,14 @@ struct Hangings {
     shapes.resize(count);
   }
 
-  void add(const Scene& said, const Scene& truth, double noise, std::mt19937& random) {
+  void add(const Scene& nominal, const Scene& truth, double noise, std::mt19937& random) {
     const std::vector<double> s = equal_arc_lengths(1, 40);
     Eigen::Matrix3Xd errors = test::correlated_noise(s, noise, 0.2, random);
     errors.row(2).setZero();
     // The image shows a rod in its plane, so the true shape is confined to the plane.
     energy_model::Problem problem = energy_problem(truth);
     problem.confined_to_plane = true;
-    scenes.push_back(said);
+    scenes.push_back(nominal);
     shapes.push_back({"seen", energy_model::solve_energy(problem).sample(s).points + errors, s});
   }
 };
@@ -53,34 +53,34 @@ Scene turned(Scene scene, std::size_t gripper, double angle) {
 
 /// Returns shapes of a wire at four known clamp angles, in a fixture whose clamp is misaligned by 6
 /// degrees.
-Hangings in_a_fixture(double noise = 0) {
+Mountings wire_in_fixture(double noise = 0) {
   std::mt19937 random(3);
-  Hangings result;
+  Mountings result;
   for (const double angle : {-40.0, -10.0, 20.0, 45.0}) {
-    const Scene said = test::heavy_scene(20, angle);
-    Scene truth = turned(said, 0, 6 * one_degree);
+    const Scene nominal = test::heavy_scene(20, angle);
+    Scene truth = turned(nominal, 0, 6 * one_degree);
     truth.natural_strain.y() = 0.8;
-    result.add(said, truth, noise, random);
+    result.add(nominal, truth, noise, random);
   }
   return result;
 }
 
 /// Returns a wire between two misaligned clamps, with more natural curvature terms than are fitted.
-Hangings four_between_clamps() {
+Mountings wire_between_clamps() {
   std::mt19937 random(8);
-  Hangings result;
+  Mountings result;
   for (int i = 0; i < 3; ++i) {
-    Scene said = test::two_clamps(200, {-0.08, 0, 0});
-    Scene truth = turned(turned(said, 0, -15 * one_degree), 1, 25 * one_degree);
+    Scene nominal = test::two_clamps(200, {-0.08, 0, 0});
+    Scene truth = turned(turned(nominal, 0, -15 * one_degree), 1, 25 * one_degree);
     truth.natural_strain.y() = 1;
     truth.natural_variation = {{0, -2}, {0, 2.5}, {0, 1.5}, {0, -1}};
-    result.add(said, truth, 0.006, random);
+    result.add(nominal, truth, 0.006, random);
   }
   return result;
 }
 
 TEST(Prediction, WhatAFixtureHasWrongIsFoundOnceAndPredictsTheShapeLeftOut) {
-  const Hangings seen = in_a_fixture();
+  const Mountings seen = wire_in_fixture();
   MaterialFitOptions options{.natural_curvature_terms = 1,
                              .direction_tolerance = 20 * one_degree,
                              .shared_clamps = true,
@@ -108,7 +108,7 @@ TEST(Prediction, WhatAFixtureHasWrongIsFoundOnceAndPredictsTheShapeLeftOut) {
 }
 
 TEST(Prediction, MoreTermsOfNaturalCurvatureNeverFitWorse) {
-  const Hangings seen = four_between_clamps();
+  const Mountings seen = wire_between_clamps();
   double before = INFINITY;
   for (int terms = 0; terms <= (test::sanitized ? 1 : 4); ++terms) {
     const MaterialFit fit =
@@ -119,7 +119,7 @@ TEST(Prediction, MoreTermsOfNaturalCurvatureNeverFitWorse) {
 }
 
 TEST(Prediction, OfThreeShapesChoosesTheOptionsThatTheWireWasMadeWithUnlessTheyAreGiven) {
-  Hangings seen = in_a_fixture(1e-3);
+  Mountings seen = wire_in_fixture(1e-3);
   const MaterialFit found = calibrate(seen.scenes, seen.shapes).fit;
   ASSERT_GT(found.tried.size(), 1);
   EXPECT_EQ(found.tried[0].natural_curvature_terms, 1);
@@ -129,7 +129,8 @@ TEST(Prediction, OfThreeShapesChoosesTheOptionsThatTheWireWasMadeWithUnlessTheyA
   }
   ASSERT_EQ(found.clamps.size(), 1);
   EXPECT_NEAR(found.clamps[0].rotation.z(), 6 * one_degree, 1 * one_degree);
-  EXPECT_TRUE(test::holds(found.youngs_modulus, seen.scenes[0].material.youngs_modulus));
+  EXPECT_TRUE(
+      test::interval_contains(found.youngs_modulus, seen.scenes[0].material.youngs_modulus));
   EXPECT_TRUE(calibrate(seen.scenes, seen.shapes, {.choose_options = false}).fit.tried.empty());
   EXPECT_TRUE(
       calibrate(seen.scenes, seen.shapes, {.natural_curvature_terms = 1}).fit.tried.empty());
@@ -140,33 +141,34 @@ TEST(Prediction, OfThreeShapesChoosesTheOptionsThatTheWireWasMadeWithUnlessTheyA
 // If each shape is fitted as a straight rod in an aligned clamp, it has a narrow interval about
 // another E.
 TEST(Prediction, OneHangingDoesNotExcludeTheStiffnessThatAllHave) {
-  const Hangings seen = in_a_fixture(1e-3);
+  const Mountings seen = wire_in_fixture(1e-3);
   const double truth = seen.scenes[0].material.youngs_modulus;
   for (std::size_t i = 0; i < (test::sanitized ? 1 : seen.shapes.size()); ++i) {
     const MaterialFit one =
         calibrate({seen.scenes[i]}, {seen.shapes[i]}, {.solve = {.time_limit = 1000}}).fit;
-    EXPECT_TRUE(test::holds(one.youngs_modulus, truth)) << i;
-    EXPECT_TRUE(says(one.warning, {"the residuals are systematic", "curved wire"})) << one.warning;
+    EXPECT_TRUE(test::interval_contains(one.youngs_modulus, truth)) << i;
+    EXPECT_TRUE(has_all(one.warning, {"the residuals are systematic", "curved wire"}))
+        << one.warning;
   }
 }
 
 TEST(Prediction, IsSaidToBeWorseThanTheShapesRepeat) {
-  const Hangings seen = in_a_fixture();
+  const Mountings seen = wire_in_fixture();
   Calibration found = calibrate({seen.scenes[0]}, {seen.shapes[0]});
   found.fit.prediction = Prediction{.rms_m = 2.94e-3, .repeatability_m = 1.78e-3};
-  EXPECT_TRUE(says(to_text(found), {"predictions are 1.65 times worse"}));
+  EXPECT_TRUE(has_all(to_text(found), {"predictions are 1.65 times worse"}));
   found.fit.prediction->rms_m = 2e-3;
-  EXPECT_TRUE(says(to_text(found), {"a prediction can hardly come nearer"}));
-  EXPECT_FALSE(Prediction{.rms_m = 1}.over_repeatability());
+  EXPECT_TRUE(has_all(to_text(found), {"a prediction can hardly come nearer"}));
+  EXPECT_FALSE(Prediction{.rms_m = 1}.repeatability_ratio());
 }
 
 TEST(Prediction, NothingIsTriedWhereNothingSystematicIsLeft) {
   std::mt19937 random(5);
   std::normal_distribution<double> normal(0, 1e-3);
-  Hangings seen;
+  Mountings seen;
   for (const double angle : {-30.0, 0.0, 30.0}) {
-    const Scene said = test::heavy_scene(20, angle);
-    seen.add(said, said, 0, random);
+    const Scene nominal = test::heavy_scene(20, angle);
+    seen.add(nominal, nominal, 0, random);
     for (double& coordinate : seen.shapes.back().points.topRows<2>().reshaped()) {
       coordinate += normal(random);
     }
@@ -175,7 +177,7 @@ TEST(Prediction, NothingIsTriedWhereNothingSystematicIsLeft) {
   ASSERT_EQ(fit.tried.size(), 1);
   EXPECT_EQ(fit.tried[0].natural_curvature_terms, 0);
   EXPECT_FALSE(fit.prediction.has_value());
-  EXPECT_TRUE(test::holds(fit.youngs_modulus, seen.scenes[0].material.youngs_modulus));
+  EXPECT_TRUE(test::interval_contains(fit.youngs_modulus, seen.scenes[0].material.youngs_modulus));
 }
 
 TEST(Prediction, RepeatabilityIsTheDistanceToTheMeanOfTheOthers) {
@@ -204,20 +206,20 @@ TEST(Prediction, RepeatabilityIsTheDistanceToTheMeanOfTheOthers) {
 }
 
 TEST(Prediction, RefusesWhatItCannotDo) {
-  const Hangings seen = in_a_fixture();
-  const auto refused = [&](const Hangings& with, const MaterialFitOptions& options) {
+  const Mountings seen = wire_in_fixture();
+  const auto refused = [&](const Mountings& with, const MaterialFitOptions& options) {
     return error_of<InputError>([&] { return fit_material(with.scenes, with.shapes, options); });
   };
-  EXPECT_TRUE(says(refused(seen, {.shared_clamps = true}),
-                   {"calibrate: the same clamps in all shapes", "--clamp-angles \"5 deg\""}));
-  Hangings two = seen;
+  EXPECT_TRUE(has_all(refused(seen, {.shared_clamps = true}),
+                      {"calibrate: the same clamps in all shapes", "--clamp-angles \"5 deg\""}));
+  Mountings two = seen;
   two.resize(2);
   EXPECT_EQ(refused(two, {.predict = true}),
             "calibrate: 2 shapes are too few to predict each by the others (allowed: 3 or more)");
-  Hangings other = seen;
+  Mountings other = seen;
   other.scenes[2].grippers[0].at = 0.1;
-  EXPECT_TRUE(says(refused(other, {.direction_tolerance = 0.1, .shared_clamps = true}),
-                   {"its grippers differ from those of heavy.toml"}));
+  EXPECT_TRUE(has_all(refused(other, {.direction_tolerance = 0.1, .shared_clamps = true}),
+                      {"its grippers differ from those of heavy.toml"}));
 }
 
 }  // namespace

@@ -84,7 +84,7 @@ TEST(SceneDocument, SaysWhyThereIsNoPolygon) {
   const ordered_json document = document_of(
       "[rod]\nlength = 1\nbending_stiffness = [1e-3, 2e-3]\nmass_per_length = 0.1\n" + level_clamp);
   const ordered_json& model = document.at("force_model");
-  EXPECT_TRUE(says(model.at("refused").get<std::string>(), {"two values"}));
+  EXPECT_TRUE(has_all(model.at("refused").get<std::string>(), {"two values"}));
   EXPECT_FALSE(model.contains("segment_m"));
   EXPECT_EQ(document.at("rod").at("bending_stiffness_Nm2"), ordered_json({1e-3, 2e-3}));
   EXPECT_TRUE(document.at("rod").at("torsional_stiffness_is_assumed"));
@@ -151,14 +151,14 @@ class SceneCommand : public dlo::test::Command {};
 
 TEST_F(SceneCommand, WritesTheDocumentAndTheSameForPeople) {
   const std::string twisted = std::string(DLO_DATA) + "/scenes/twisted_wire.toml";
-  const std::string result = said("scene --points 8 -o " + path("s.json") + " " + twisted);
+  const std::string result = output_of("scene --points 8 -o " + path("s.json") + " " + twisted);
   const ordered_json document = ordered_json::parse(read(path("s.json")));
   Scene scene = load_scene(twisted);
   scene.force_model.points = 8;
   EXPECT_EQ(document, ordered_json::parse(scene_document_text(scene)));
   const dlo::test::Outcome text = run("scene " + twisted);
-  EXPECT_TRUE(says(text.out, {"\n  torsional stiffness", " 0.00793 N m^2\n", "3.142"}));
-  EXPECT_TRUE(says_none(text.out, {"null"}));
+  EXPECT_TRUE(has_all(text.out, {"\n  torsional stiffness", " 0.00793 N m^2\n", "3.142"}));
+  EXPECT_TRUE(has_none(text.out, {"null"}));
   expect_error("scene --format csv " + twisted, 2, {"--format", "csv"});
 }
 

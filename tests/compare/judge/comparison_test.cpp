@@ -156,7 +156,7 @@ TEST(Comparison, ComparesWithTheStateThatTheForceModelIsIn) {
   EXPECT_GT(c.state.others.front().rms_from_compared_m, 0.1);
   EXPECT_LT(c.deviation.rms_over_length, 0.01);
   EXPECT_NEAR(c.budget.discretisation.share, 1, 0.01);
-  for (const OtherState& other : c.state.others) {
+  for (const UncomparedEquilibrium& other : c.state.others) {
     EXPECT_GT(other.rms_from_shape_m, 5 * c.deviation.rms_m);
   }
   EXPECT_TRUE(compare(heavy_scene(0.2, 0)).state.others.empty());
@@ -169,7 +169,7 @@ TEST(Comparison, TheBudgetBetweenTwoClampsAddsUp) {
   scene.force_model.c_c = scene.axial_stiffness() / 100;
   const Comparison c = compare(scene, {}, {}, ModulusSearch::no);
   EXPECT_EQ(c.effective_modulus.optimum, Optimum::none);
-  EXPECT_EQ(c.effective_modulus.why_none, "skipped");
+  EXPECT_EQ(c.effective_modulus.missing_reason, "skipped");
   const Budget& b = c.budget;
   EXPECT_NEAR(test::sum_of_shares(b), 1, 1e-9);
   EXPECT_NEAR(b.interaction.share, 0, 0.02);

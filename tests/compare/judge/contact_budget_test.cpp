@@ -15,7 +15,7 @@ namespace dlo::compare {
 namespace {
 
 /// A rod that leaves its clamp level at this height over a floor.
-Scene over_a_floor(double gamma, double height) {
+Scene rod_over_floor(double gamma, double height) {
   Scene scene = heavy_scene(gamma, 0);
   scene.grippers.front().position.y() = height;
   scene.obstacles = {Obstacle{}};
@@ -45,7 +45,7 @@ FloorBudget floor_budget(const Scene& scene) {
 // which is of first order in L.
 TEST(ContactBudget, IsWhatABeamSinksIntoAnElasticFoundation) {
   for (const int points : {16, 32, 64}) {
-    Scene scene = over_a_floor(200, 0);
+    Scene scene = rod_over_floor(200, 0);
     scene.force_model.points = points;
     const double finer = points / 16.0;
     scene.force_model.c_c = scene.axial_stiffness() / 1e4 / (finer * finer);
@@ -59,15 +59,15 @@ TEST(ContactBudget, IsWhatABeamSinksIntoAnElasticFoundation) {
 }
 
 TEST(ContactBudget, IsNothingWhereNothingRigidIsTouched) {
-  EXPECT_EQ(floor_budget(over_a_floor(2, 2)).budget.contact.rms_m, 0);
-  EXPECT_EQ(floor_budget(over_a_floor(0.1, 0.9)).budget.contact.rms_m, 0);
+  EXPECT_EQ(floor_budget(rod_over_floor(2, 2)).budget.contact.rms_m, 0);
+  EXPECT_EQ(floor_budget(rod_over_floor(0.1, 0.9)).budget.contact.rms_m, 0);
   // With the stiffness that represents a rigid obstacle, the depth is not an error of the model.
-  Scene rigid = over_a_floor(200, 0.02);
+  Scene rigid = rod_over_floor(200, 0.02);
   rigid.force_model.c_c = 100 * rigid.axial_stiffness();
   EXPECT_LT(floor_budget(rigid).budget.contact.rms_m, 1e-9 * rigid.length);
   // A compliant obstacle is part of the scene, so its compliance is not an error of the force
   // model.
-  Scene yielding = over_a_floor(200, 0.02);
+  Scene yielding = rod_over_floor(200, 0.02);
   yielding.obstacles.front().stiffness = 1e3 * yielding.weight_per_length().norm();
   EXPECT_EQ(floor_budget(yielding).budget.contact.rms_m, 0);
 }

@@ -49,7 +49,7 @@ TEST(EffectiveModulus, ARodThatHangsStraightHasNone) {
     const EffectiveModulus fit = fit_effective_modulus(scene, shape);
     EXPECT_EQ(fit.optimum, Optimum::none);
     EXPECT_TRUE(std::isnan(fit.ratio));
-    EXPECT_EQ(fit.why_none, "the shape does not change with E");
+    EXPECT_EQ(fit.missing_reason, "the shape does not change with E");
   }
 }
 
@@ -116,10 +116,10 @@ TEST(EffectiveModulus, TheTimeLimitIsForTheWholeSearch) {
   const EffectiveModulus fit = fit_effective_modulus(scene, distance, state, {.time_limit = 1e-9});
   EXPECT_EQ(fit.optimum, Optimum::none);
   EXPECT_TRUE(std::isnan(fit.ratio));
-  EXPECT_EQ(fit.why_none, "time limit of 1e-09 s reached");
+  EXPECT_EQ(fit.missing_reason, "time limit of 1e-09 s reached");
   EXPECT_EQ(fit.solves, 0);
   const energy_model::Interruption interruption([] { return true; });
-  EXPECT_EQ(fit_effective_modulus(scene, distance, state, {}).why_none,
+  EXPECT_EQ(fit_effective_modulus(scene, distance, state, {}).missing_reason,
             "interrupted, or out of the time of the whole command");
 }
 

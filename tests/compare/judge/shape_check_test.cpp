@@ -60,7 +60,7 @@ TEST(ShapeCheck, FindsTheModulusInAnyFrameFromEitherEnd) {
     EXPECT_NEAR(check.effective_modulus.ratio, 0.4, 1e-3);
     EXPECT_LT(check.effective_modulus.rms_m, 1e-6);
     EXPECT_GT(check.deviation.rms_m, 1e-3);
-    EXPECT_TRUE(check.turn_is_clear);
+    EXPECT_TRUE(check.is_rotation_determined);
   }
 }
 
@@ -89,7 +89,7 @@ TEST(ShapeCheck, AFrameByNearestPointsIsNeverWorseThanByLengthsAlongThePoints) {
       const auto distance = [&](ArcLengths rule) {
         const ShapeCheckOptions options{
             .pose = pose, .arc_lengths = rule, .modulus = ModulusSearch::no};
-        return check_shape(scene, seen, options).whole_rms_m;
+        return check_shape(scene, seen, options).whole_rod_rms_m;
       };
       EXPECT_LE(distance(ArcLengths::nearest), (1 + 1e-9) * distance(ArcLengths::chord));
     }
@@ -110,7 +110,7 @@ TEST(ShapeCheck, AFileThatIsCutOffKeepsItsFrame) {
         check_shape(scene, cut, {.pose = PoseFreedom::upright, .modulus = ModulusSearch::no});
     EXPECT_EQ(check.alignment.arc_lengths, ArcLengths::nearest) << seen;
     EXPECT_LT(check.deviation.rms_m, 1e-6) << seen;
-    EXPECT_NEAR(check.seen_share, seen, 1e-4) << seen;
+    EXPECT_NEAR(check.observed_share, seen, 1e-4) << seen;
   }
 }
 
@@ -125,7 +125,7 @@ TEST(ShapeCheck, TheEndsOfAFileAsLongAsTheRodAreTheRods) {
     EXPECT_EQ(check.alignment.arc_lengths, ArcLengths::nearest);
     EXPECT_EQ(check.reference.arc_length.front(), 0);
     EXPECT_DOUBLE_EQ(check.reference.arc_length.back(), 1);
-    EXPECT_DOUBLE_EQ(check.seen_share, 1);
+    EXPECT_DOUBLE_EQ(check.observed_share, 1);
   }
 }
 
@@ -137,7 +137,7 @@ TEST(ShapeCheck, ComparesWithTheStateThatTheShapeIsIn) {
       {.at = 1, .position = {0.6, 0, 0}, .direction = Eigen::Vector3d(1, -1, 0).normalized()});
   Scene soft = scene;
   soft.material.youngs_modulus *= 0.8;
-  MeasuredShape shape = test::seen_shape(soft, equal_arc_lengths(1, 31));
+  MeasuredShape shape = test::energy_model_shape(soft, equal_arc_lengths(1, 31));
   for (const double side : {1, -1}) {
     shape.points.row(2) *= side;
     const ShapeCheck check = check_shape(scene, shape);
@@ -161,7 +161,7 @@ TEST(ShapeCheck, SaysWhereItIsWorst) {
     EXPECT_NEAR(back.deviation.max_at_m, 0.7, 1e-3);
     EXPECT_EQ(back.worst_point, 4);
     EXPECT_TRUE(back.alignment.reversed);
-    EXPECT_TRUE(back.direction_is_clear);
+    EXPECT_TRUE(back.is_direction_determined);
   }
 }
 
@@ -195,11 +195,11 @@ TEST(ShapeCheck, TheRotationOfAStraightShapeIsNotIdentifiable) {
   EXPECT_LT(check.deviation.rms_m, 1e-4);
   MeasuredShape line{"line", Eigen::Matrix3Xd::Zero(3, 5), {}};
   line.points.row(2) = Eigen::RowVectorXd::LinSpaced(5, 0, 1);
-  EXPECT_FALSE(check_shape(scene, line, {.pose = PoseFreedom::rigid}).turn_is_clear);
+  EXPECT_FALSE(check_shape(scene, line, {.pose = PoseFreedom::rigid}).is_rotation_determined);
 }
 
-CheckResult verdict_of(const Scene& scene, const Eigen::Matrix3Xd& points, double share,
-                       double of_deflection = 0) {
+CheckResult check_points(const Scene& scene, const Eigen::Matrix3Xd& points, double share,
+                         double of_deflection = 0) {
   return check(scene, {"mine.csv", points, {}},
                {.tolerance = ShapeTolerance{.allowed_m = share * scene.length,
                                             .deflection_share = of_deflection},
@@ -211,9 +211,9 @@ CheckResult verdict_of(const Scene& scene, const Eigen::Matrix3Xd& points, doubl
 TEST(ShapeCheck, AFileWithoutPointsAtTheBendIsUndetermined) {
   const Scene scene = heavy_scene(100, 0);
   std::vector<double> s = equal_arc_lengths(1, 101);
-  EXPECT_TRUE(verdict_of(scene, exact_shape(scene, s).points, 0.005).passes());
+  EXPECT_TRUE(check_points(scene, exact_shape(scene, s).points, 0.005).passes());
   std::erase_if(s, [](double at) { return at > 0 && at < 0.25; });
-  const CheckResult result = verdict_of(scene, exact_shape(scene, s).points, 0.005);
+  const CheckResult result = check_points(scene, exact_shape(scene, s).points, 0.005);
   EXPECT_EQ(result.judgement.verdict, ShapeVerdict::undetermined) << result.judgement.reason;
   EXPECT_LT(result.judgement.judged_m, 1e-3);
 }
@@ -234,7 +234,7 @@ TEST(ShapeCheck, AFileNearAnUnverifiedEquilibriumIsUndetermined) {
 TEST(ShapeCheck, IsJudgedOverTheWholeRodUnlessAPartIsAsked) {
   const Scene scene = heavy_scene(10, 0);
   ShapeCheck check = check_shape(scene, exact_shape(scene, equal_arc_lengths(1, 21)));
-  check.whole_rms_m = 0.02;
+  check.whole_rod_rms_m = 0.02;
   EXPECT_EQ(judge(check, {.allowed_m = 0.01}).verdict, ShapeVerdict::fail);
   EXPECT_EQ(judge(check, {.allowed_m = 0.01, .part = true}).verdict, ShapeVerdict::pass);
 }
@@ -249,20 +249,21 @@ TEST(Significance, APassThatAStraightLineWouldHaveTooSaysSo) {
   Eigen::Matrix3Xd line = Eigen::Matrix3Xd::Zero(3, 21);
   line.row(0) = Eigen::RowVectorXd::LinSpaced(21, 0, 1);
   for (const Eigen::Matrix3Xd& points : {right, half, line}) {
-    const CheckResult passed = verdict_of(scene, points, 0.01);
+    const CheckResult passed = check_points(scene, points, 0.01);
     EXPECT_TRUE(passed.passes());
     EXPECT_EQ(passed.judgement.significant, false);
     EXPECT_NEAR(passed.deflection_m, gamma / 8, 1e-3 * gamma / 8);
-    EXPECT_TRUE(test::says(passed.judgement.reason,
-                           {"; not significant for stiffness or weight: the rod without weight and "
-                            "loads would pass too"}));
+    EXPECT_TRUE(
+        test::has_all(passed.judgement.reason,
+                      {"; not significant for stiffness or weight: the rod without weight and "
+                       "loads would pass too"}));
     EXPECT_EQ(other_stiffness_within(passed), "");
   }
-  EXPECT_EQ(verdict_of(scene, right, 0.01, 0.05).judgement.significant, true);
-  EXPECT_FALSE(verdict_of(scene, half, 0.01, 0.05).passes());
+  EXPECT_EQ(check_points(scene, right, 0.01, 0.05).judgement.significant, true);
+  EXPECT_FALSE(check_points(scene, half, 0.01, 0.05).passes());
   const Scene heavy = heavy_scene(10, 0);
   const CheckResult bent =
-      verdict_of(heavy, exact_shape(heavy, equal_arc_lengths(1, 21)).points, 0.01);
+      check_points(heavy, exact_shape(heavy, equal_arc_lengths(1, 21)).points, 0.01);
   EXPECT_EQ(bent.judgement.significant, true);
 }
 
@@ -275,7 +276,7 @@ TEST(Significance, IsThatOfEveryKindOfLoad) {
   line.distributed_loads = {{.from = 0, .to = 1, .force_per_length = {{0, 0.16 * unit, 0}}}};
   for (const Scene& scene : {tip, line}) {
     const CheckResult passed =
-        verdict_of(scene, exact_shape(scene, equal_arc_lengths(1, 21)).points, 0.005);
+        check_points(scene, exact_shape(scene, equal_arc_lengths(1, 21)).points, 0.005);
     EXPECT_EQ(passed.judgement.significant, true);
     EXPECT_NEAR(passed.deflection_m, 0.02, 1e-3 * 0.02);
   }
@@ -286,10 +287,10 @@ TEST(Significance, IsThatOfEveryKindOfLoad) {
 TEST(Significance, OfARodThatHangsStraightThereIsNoDeflection) {
   const Scene scene = heavy_scene(10, -90);
   const Eigen::Matrix3Xd points = exact_shape(scene, equal_arc_lengths(1, 21)).points;
-  EXPECT_EQ(verdict_of(scene, points, 0.01).judgement.significant, false);
-  EXPECT_TRUE(
-      test::says(test::error_of<InputError>([&] { return verdict_of(scene, points, 0.01, 0.05); }),
-                 {"a tolerance of deflection", "1e-06 of its length"}));
+  EXPECT_EQ(check_points(scene, points, 0.01).judgement.significant, false);
+  EXPECT_TRUE(test::has_all(
+      test::error_of<InputError>([&] { return check_points(scene, points, 0.01, 0.05); }),
+      {"a tolerance of deflection", "1e-06 of its length"}));
 }
 
 TEST(Significance, TheTrivialShapeKeepsNaturalCurvatureAndGrippers) {
@@ -331,7 +332,7 @@ TEST(ShapeCheck, TheReferenceIsTheStableEquilibriumNearThePoints) {
   const Eigen::Matrix3Xd points = along_corners(corners, 41);
   const SolveOptions options;
   std::vector<energy_model::Equilibrium> states =
-      all_states(scene, solve_reference(scene, Model::energy), options);
+      all_equilibria(scene, solve_reference(scene, Model::energy), options);
   for (const bool backwards : {false, true}) {
     const MeasuredShape shape{
         "rope", backwards ? Eigen::Matrix3Xd(points.rowwise().reverse()) : points, {}};
@@ -346,11 +347,11 @@ TEST(ShapeCheck, TheReferenceIsTheStableEquilibriumNearThePoints) {
   // An equilibrium that a search of the scene does not find is found by a search from the points.
   std::erase_if(states, [](const auto& state) { return !state.contacts.empty(); });
   ASSERT_EQ(states.size(), 1);
-  const Shape laid = laid_by_grippers({"rope", points, {}}, scene, ArcLengths::nearest);
-  const std::optional<energy_model::Equilibrium> near = state_near(scene, laid, options);
+  const Shape aligned = aligned_by_grippers({"rope", points, {}}, scene, ArcLengths::nearest);
+  const std::optional<energy_model::Equilibrium> near = equilibrium_near(scene, aligned, options);
   ASSERT_TRUE(near);
-  EXPECT_EQ(add_state(scene, *near, states), 1U);
-  EXPECT_EQ(add_state(scene, *near, states), std::nullopt);
+  EXPECT_EQ(insert_equilibrium(scene, *near, states), 1U);
+  EXPECT_EQ(insert_equilibrium(scene, *near, states), std::nullopt);
   EXPECT_EQ(states.size(), 2);
 }
 

@@ -12,18 +12,19 @@ constexpr double missed_step = 1.0 / 512;
 
 /// Whether two shapes show the end of the branch. The later shape is at a fraction `share` of the
 /// missed step before the end, and the earlier one precedes it by `way`.
-bool shows(const std::function<BranchWitness(double)>& shape_before_end, double way, double share) {
-  BranchWitness last = shape_before_end(share * missed_step);
-  BranchWitness before = shape_before_end(share * missed_step + way);
+bool shows_end(const std::function<BranchSample(double)>& shape_before_end, double way,
+               double share) {
+  BranchSample last = shape_before_end(share * missed_step);
+  BranchSample before = shape_before_end(share * missed_step + way);
   last.at = 1;
   before.at = 1 - way;
-  return shows_its_end(before, last, missed_step);
+  return branch_ends_before(before, last, missed_step);
 }
 
-BranchWitness of_curvature(double curvature) { return {.smallest_eigenvalue = curvature}; }
+BranchSample sample_with_eigenvalue(double curvature) { return {.smallest_eigenvalue = curvature}; }
 
-BranchWitness of_force(double force) {
-  BranchWitness witness{.smallest_eigenvalue = 0.7};
+BranchSample sample_with_contact_force(double force) {
+  BranchSample witness{.smallest_eigenvalue = 0.7};
   witness.contacts.resize(2);
   witness.contacts[0].force = Eigen::Vector3d(0, 3, 0);
   witness.contacts[1].force = Eigen::Vector3d(0, force, 0);
@@ -33,9 +34,12 @@ BranchWitness of_force(double force) {
 TEST(BranchWitness, ShowsFoldsBifurcationsAndLettingGo) {
   for (const double way : {missed_step, 8 * missed_step, 0.125, 1.0}) {
     for (const double share : {0.01, 0.5, 1.0}) {
-      EXPECT_TRUE(shows([](double left) { return of_curvature(3 * std::sqrt(left)); }, way, share));
-      EXPECT_TRUE(shows([](double left) { return of_curvature(2 * left); }, way, share));
-      EXPECT_TRUE(shows([](double left) { return of_force(0.2 * left); }, way, share));
+      EXPECT_TRUE(shows_end([](double left) { return sample_with_eigenvalue(3 * std::sqrt(left)); },
+                            way, share));
+      EXPECT_TRUE(
+          shows_end([](double left) { return sample_with_eigenvalue(2 * left); }, way, share));
+      EXPECT_TRUE(
+          shows_end([](double left) { return sample_with_contact_force(0.2 * left); }, way, share));
     }
   }
 }
@@ -44,23 +48,25 @@ TEST(BranchWitness, ShowsFoldsBifurcationsAndLettingGo) {
 TEST(BranchWitness, ShowsNoEndThatIsFarAway) {
   constexpr double far = 0.1;
   for (const double way : {missed_step, 8 * missed_step, 0.125, 1.0}) {
+    EXPECT_FALSE(shows_end(
+        [](double left) { return sample_with_eigenvalue(3 * std::sqrt(left + far)); }, way, 1));
     EXPECT_FALSE(
-        shows([](double left) { return of_curvature(3 * std::sqrt(left + far)); }, way, 1));
-    EXPECT_FALSE(shows([](double left) { return of_curvature(2 * (left + far)); }, way, 1));
-    EXPECT_FALSE(shows([](double left) { return of_force(left + far); }, way, 1));
-    EXPECT_FALSE(shows([](double left) { return of_curvature(1 - left); }, way, 1));
-    EXPECT_FALSE(shows([](double /*left*/) { return BranchWitness{}; }, way, 1));
+        shows_end([](double left) { return sample_with_eigenvalue(2 * (left + far)); }, way, 1));
+    EXPECT_FALSE(
+        shows_end([](double left) { return sample_with_contact_force(left + far); }, way, 1));
+    EXPECT_FALSE(shows_end([](double left) { return sample_with_eigenvalue(1 - left); }, way, 1));
+    EXPECT_FALSE(shows_end([](double /*left*/) { return BranchSample{}; }, way, 1));
   }
 }
 
 // Forces of different contacts must not be compared.
 TEST(BranchWitness, ComparesTheSameContactsOnly) {
-  BranchWitness last = of_force(1e-9);
-  BranchWitness before = of_force(1);
+  BranchSample last = sample_with_contact_force(1e-9);
+  BranchSample before = sample_with_contact_force(1);
   last.at = 1;
-  EXPECT_TRUE(shows_its_end(before, last, missed_step));
+  EXPECT_TRUE(branch_ends_before(before, last, missed_step));
   before.contacts.resize(1);
-  EXPECT_FALSE(shows_its_end(before, last, missed_step));
+  EXPECT_FALSE(branch_ends_before(before, last, missed_step));
 }
 
 }  // namespace

@@ -16,10 +16,10 @@
 namespace dlo::compare {
 namespace {
 
-TrackOptions frames_at(double rate) {
+TrackOptions options_at_rate(double rate) {
   TrackOptions options;
   options.rates.frames = rate;
-  options.force = ForceBeside::absent;
+  options.force = ForceModelRun::absent;
   options.samples = 21;
   options.solve.terms = 8;
   return options;
@@ -35,7 +35,8 @@ Scene swung(double slower) {
   return scene;
 }
 
-DynamicTrack moved(const Scene& scene, const TrackOptions& options, const RodDamping& damping) {
+DynamicTrack follow_with_inertia(const Scene& scene, const TrackOptions& options,
+                                 const RodDamping& damping) {
   const Track at_rest = track(scene, options);
   EXPECT_FALSE(at_rest.stopped);
   return dynamic_track(scene, at_rest, options, damping);
@@ -65,7 +66,7 @@ TEST(TrajectoryMotion, AccelerationsJumpJustAfterAPose) {
 // that of the quasi-static track.
 TEST(DynamicTrack, KeepsTheBalanceOfEnergyAndWork) {
   const Scene scene = swung(1);
-  const TrackOptions options = frames_at(50);
+  const TrackOptions options = options_at_rate(50);
   const Track at_rest = track(scene, options);
   for (const RodDamping damping : {RodDamping{}, RodDamping{.material = 0.01, .air = 0.02}}) {
     const DynamicTrack result = dynamic_track(scene, at_rest, options, damping);
@@ -96,7 +97,7 @@ TEST(DynamicTrack, AGripperCarriesTheMassOfAStiffRod) {
       "[[gripper.pose]]\ntime = 1\nposition = [0, 0, 0]\n"
       "[[gripper.pose]]\ntime = 2\nposition = [0.5, 2, 0]\n",
       "stiff.toml");
-  const DynamicTrack result = moved(scene, frames_at(8), {.material = 0.01});
+  const DynamicTrack result = follow_with_inertia(scene, options_at_rate(8), {.material = 0.01});
   ASSERT_EQ(result.frames.size(), 9U);
   const Eigen::Vector3d way(0.5, 2, 0);
   for (const std::size_t i : {3U, 5U, 6U}) {
@@ -109,8 +110,8 @@ TEST(DynamicTrack, AGripperCarriesTheMassOfAStiffRod) {
 }
 
 TEST(DynamicTrack, MeasuresTheForceModelAgainstTheMovingRod) {
-  TrackOptions options = frames_at(50);
-  options.force = ForceBeside::runs;
+  TrackOptions options = options_at_rate(50);
+  options.force = ForceModelRun::runs;
   options.to = 0.1;
   Scene scene = swung(1);
   scene.track.steps = 3000;
@@ -130,8 +131,8 @@ TEST(DynamicTrack, RefusesARodWithoutMass) {
       "direction = \"60 deg\"\n[[gripper.pose]]\ntime = 0\nposition = [0, 0, 0]\n"
       "[[gripper.pose]]\ntime = 1\nposition = [0.1, 0, 0]\n",
       "refused.toml");
-  EXPECT_TRUE(says(error_of<InputError>([&] { return require_dynamic(scene); }),
-                   {"refused.toml: --dynamic: ", "no mass", "allowed"}));
+  EXPECT_TRUE(has_all(error_of<InputError>([&] { return require_dynamic(scene); }),
+                      {"refused.toml: --dynamic: ", "no mass", "allowed"}));
 }
 
 /// A round rod that its clamp moves in a medium at rest.
@@ -150,7 +151,8 @@ Scene moved_in_water(const std::string& drags) {
 TEST(DynamicTrack, AMediumAtRestDragsTheMovingRod) {
   const std::string still = "velocity = [0, 0, 0]\nnormal_drag = 1.5\n";
   const auto last_points = [](const std::string& drags, double quadratic) {
-    return moved(moved_in_water(drags), frames_at(20), {.material = 0.01, .quadratic = quadratic})
+    return follow_with_inertia(moved_in_water(drags), options_at_rate(20),
+                               {.material = 0.01, .quadratic = quadratic})
         .frames.back()
         .points;
   };
@@ -158,8 +160,8 @@ TEST(DynamicTrack, AMediumAtRestDragsTheMovingRod) {
   EXPECT_EQ(dragged, last_points("", 500 * 1.5 * 4e-3));
   EXPECT_GT((dragged - last_points("", 0)).norm(), 1e-2);
   const Scene along = moved_in_water(still + "tangential_drag = 0.1\n");
-  EXPECT_TRUE(says(error_of<InputError>([&] { return require_dynamic(along); }),
-                   {"medium.tangential_drag", "allowed"}));
+  EXPECT_TRUE(has_all(error_of<InputError>([&] { return require_dynamic(along); }),
+                      {"medium.tangential_drag", "allowed"}));
 }
 
 // Two clamps move a wire at constant velocity. If it starts with this velocity it does not vibrate.
@@ -175,16 +177,16 @@ TEST(DynamicTrack, ARodThatIsCarriedEvenlyStaysAsAtRest) {
                           end + 0.3 * time, 0.1 * time, 0.05 * time);
     }
   }
-  TrackOptions options = frames_at(20);
+  TrackOptions options = options_at_rate(20);
   options.from = 1;
   options.to = 2;
   options.solve.terms = 20;
-  const DynamicTrack carried = moved(parse_scene(text, "carried.toml"), options, {});
+  const DynamicTrack carried = follow_with_inertia(parse_scene(text, "carried.toml"), options, {});
   ASSERT_FALSE(carried.stopped);
   EXPECT_TRUE(carried.in_motion);
   EXPECT_LT(carried.quasi_static.largest, 1e-7);
   options.from = 0;
-  const DynamicTrack started = moved(parse_scene(text, "carried.toml"), options, {});
+  const DynamicTrack started = follow_with_inertia(parse_scene(text, "carried.toml"), options, {});
   EXPECT_FALSE(started.in_motion);
   EXPECT_GT(started.quasi_static.largest, 1e-3);
 }
@@ -194,10 +196,10 @@ TEST(DynamicTrack, ARodThatIsCarriedEvenlyStaysAsAtRest) {
 TEST(DynamicTrack, BeginsInTheMiddleAsIfItHadBegunBefore) {
   const Scene scene = swung(20);
   const RodDamping damping{.material = 0.02, .air = 0.1};
-  TrackOptions options = frames_at(5);
-  const DynamicTrack all = moved(scene, options, damping);
+  TrackOptions options = options_at_rate(5);
+  const DynamicTrack all = follow_with_inertia(scene, options, damping);
   options.from = 4;
-  const DynamicTrack late = moved(scene, options, damping);
+  const DynamicTrack late = follow_with_inertia(scene, options, damping);
   ASSERT_GT(late.frames.size(), 10U);
   const std::size_t before = all.frames.size() - late.frames.size();
   const auto apart = [&](std::size_t i) {
@@ -226,9 +228,9 @@ TEST(DynamicTrack, AWristTurnsTheWire) {
         "torsional_stiffness = 0.004\nmass_per_length = 0.03\n" +
             rod + wrist + rest,
         "wrist.toml");
-    TrackOptions options = frames_at(2);
+    TrackOptions options = options_at_rate(2);
     options.solve.terms = 16;  // frames that roll and those that do not take other series
-    const DynamicTrack result = moved(scene, options, {.air = 0.3});
+    const DynamicTrack result = follow_with_inertia(scene, options, {.air = 0.3});
     ASSERT_FALSE(result.stopped);
     EXPECT_LT(result.energy_error, 1e-5);
     EXPECT_GT(result.quasi_static.largest, 2 * result.frames.back().quasi_static_error);
@@ -239,8 +241,10 @@ TEST(DynamicTrack, AWristTurnsTheWire) {
 }
 
 TEST(DynamicTrack, RefusesADampingThatIsNegativeOrNoNumber) {
-  EXPECT_THROW((void)moved(swung(1), frames_at(10), {.material = -1}), InputError);
-  EXPECT_THROW((void)moved(swung(1), frames_at(10), {.air = std::nan("")}), InputError);
+  EXPECT_THROW((void)follow_with_inertia(swung(1), options_at_rate(10), {.material = -1}),
+               InputError);
+  EXPECT_THROW((void)follow_with_inertia(swung(1), options_at_rate(10), {.air = std::nan("")}),
+               InputError);
 }
 
 // A clamp lays a rod on a rigid floor, or the floor comes up to it; either way they meet halfway,
@@ -260,7 +264,7 @@ TEST(DynamicTrack, RigidFloorsThatStandOrMoveCarryTheRodAsAtRest) {
   const Scene raised = scene("position = [0, 0, 0]\n",
                              "[[obstacle.pose]]\ntime = 0\npoint = [0, -0.6, 0]\n"
                              "[[obstacle.pose]]\ntime = 0.5\npoint = [0, -0.3, 0]\n");
-  TrackOptions options = frames_at(20);
+  TrackOptions options = options_at_rate(20);
   options.to = 4;
   options.solve.terms = 16;
   std::vector<Eigen::Vector3d> forces;
@@ -300,9 +304,9 @@ Scene released_rod(double weight) {
 }
 
 TEST(DynamicTrack, ReleasesTheRodFromAGivenShape) {
-  TrackOptions options = frames_at(40);
+  TrackOptions options = options_at_rate(40);
   options.to = 3;
-  const DynamicTrack released = moved(released_rod(0.01), options, {});
+  const DynamicTrack released = follow_with_inertia(released_rod(0.01), options, {});
   ASSERT_EQ(released.frames.size(), 121U);
   EXPECT_LT(released.frames.front().points.row(1).cwiseAbs().maxCoeff(), 1e-9);
   // The first mode, of which the others differ by a few percent, has a period of 2 pi / 3.516.
@@ -315,15 +319,15 @@ TEST(DynamicTrack, ReleasesTheRodFromAGivenShape) {
 
 TEST(DynamicTrack, RefusesAStartWithTooFewPointsOrWithoutAnEnd) {
   Scene scene = released_rod(1);
-  TrackOptions options = frames_at(40);
-  EXPECT_TRUE(
-      says(error_of<InputError>([&] { (void)track(scene, options); }), {"nothing moves", "--to"}));
+  TrackOptions options = options_at_rate(40);
+  EXPECT_TRUE(has_all(error_of<InputError>([&] { (void)track(scene, options); }),
+                      {"nothing moves", "--to"}));
   options.to = 1;
   MarkerMotion few = *scene.start;
   few.positions.resize(3);
   scene.start = std::make_shared<const MarkerMotion>(few);
-  EXPECT_TRUE(says(error_of<InputError>([&] { (void)moved(scene, options, {}); }),
-                   {"track.start = straight.csv", "too few points", "allowed"}));
+  EXPECT_TRUE(has_all(error_of<InputError>([&] { (void)follow_with_inertia(scene, options, {}); }),
+                      {"track.start = straight.csv", "too few points", "allowed"}));
 }
 
 }  // namespace

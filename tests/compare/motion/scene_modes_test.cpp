@@ -17,7 +17,7 @@
 namespace dlo::compare {
 namespace {
 
-Scene loaded_aside() {
+Scene rod_with_lateral_load() {
   Scene scene = test::heavy_scene(6, 20);
   scene.loads.push_back({.at = 0.7, .force = {0, 0, 0.3 * scene.bending_stiffness()}});
   return scene;
@@ -27,16 +27,16 @@ Scene loaded_aside() {
 // h. Its frequencies converge at second order to those of the continuous rod, which are computed
 // independently.
 TEST(SceneModes, OfThePolygonConvergeToThoseOfTheRod) {
-  Scene scene = loaded_aside();
+  Scene scene = rod_with_lateral_load();
   std::array<double, 3> before{};
   for (const int points : {24, 48, 96}) {
     scene.force_model.points = points;
     const SceneModes found = scene_modes(scene, {.count = 3});
-    ASSERT_EQ(found.no_polygon, "");
+    ASSERT_EQ(found.missing_polygon_reason, "");
     for (std::size_t k = 0; k < 3; ++k) {
       const SceneMode& mode = found.modes[k];
       ASSERT_TRUE(mode.polygon_omega);
-      EXPECT_GT(mode.polygon_likeness, 0.99);
+      EXPECT_GT(mode.polygon_kinetic_share, 0.99);
       const double off = *mode.polygon_omega / mode.rod.omega() - 1;
       EXPECT_LT(std::abs(off), 6.0 * static_cast<double>(k + 1) / (points * points)) << points;
       // The error is proportional to 1 / (N - 1.5)^2, not to 1 / N^2, so that the ratio is above 4.
@@ -98,7 +98,7 @@ struct Swing {
 };
 
 Scene stepped_scene(double c_F, double c_h) {
-  Scene scene = loaded_aside();
+  Scene scene = rod_with_lateral_load();
   scene.force_model.points = 12;
   scene.force_model.c_c = 2e-5 * scene.axial_stiffness();
   if (c_F > 0) {
@@ -189,7 +189,7 @@ TEST(SteppedMode, IsVerletWithoutDampingAndUnstableBeyondFour) {
 
 // Masses of the rod make Formula 19 swing as the rod does, with the damping that is asked for.
 TEST(SceneModes, PhysicalStepsSwingAsTheRodDoes) {
-  Scene scene = loaded_aside();
+  Scene scene = rod_with_lateral_load();
   scene.force_model.points = 48;
   const double rate = 1.01 * scene_modes(scene, {.count = 1}).physical->least_rate;
   const PhysicalSteps physical =
@@ -198,7 +198,7 @@ TEST(SceneModes, PhysicalStepsSwingAsTheRodDoes) {
   scene.force_model.c_F = physical.c_F;
   scene.force_model.c_h = physical.c_h;
   const SceneModes found = scene_modes(scene, {.count = 2, .rate = rate});
-  EXPECT_NEAR(*found.mass_of_steps, physical.point_mass, 1e-9 * physical.point_mass);
+  EXPECT_NEAR(*found.effective_point_mass, physical.point_mass, 1e-9 * physical.point_mass);
   for (const SceneMode& mode : found.modes) {
     // The tip's point has half the mass of the others, the mean is a little less than theirs.
     EXPECT_NEAR(mode.stepped->omega / mode.rod.omega(), 1, 0.03);
@@ -232,7 +232,7 @@ TEST(SceneModes, SayWhyThereAreNone) {
   twisted.torsional_stiffness = twisted.bending_stiffness();
   const SceneModes found = scene_modes(twisted, {.count = 2});
   EXPECT_EQ(found.modes.size(), 2U);
-  EXPECT_TRUE(says(found.no_polygon, {"twist"}));
+  EXPECT_TRUE(has_all(found.missing_polygon_reason, {"twist"}));
   Scene lying = test::heavy_scene(50, 0);
   lying.obstacles.push_back({obstacle::Body::half_space({0, -0.1, 0}, {0, 1, 0})});
   EXPECT_THROW((void)scene_modes(lying), ConvergenceError);

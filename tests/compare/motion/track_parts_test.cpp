@@ -55,10 +55,10 @@ TEST(Lag, OfWhatStandsOrMovesTheOtherWayThereIsNone) {
     leader.push_back((Eigen::Matrix3Xd(3, 2) << 0, 1, way, way * way, 0, 0).finished());
   }
   const std::vector<Eigen::Matrix3Xd> stands(10, leader.front());
-  EXPECT_TRUE(std::isnan(lag_of(stands, stands, step).time));
+  EXPECT_TRUE(std::isnan(estimate_lag(stands, stands, step).time));
   std::vector<Eigen::Matrix3Xd> away = leader;
   for (Eigen::Matrix3Xd& shape : away) shape.row(1) *= -1;
-  EXPECT_TRUE(std::isnan(lag_of(leader, away, step).time));
+  EXPECT_TRUE(std::isnan(estimate_lag(leader, away, step).time));
 }
 
 TEST(ContactChanges, PairTheNearestPartsOfAnObstacle) {
@@ -72,7 +72,7 @@ TEST(ContactChanges, PairTheNearestPartsOfAnObstacle) {
         begins ? contact_changes({moved}, both) : contact_changes(both, {moved});
     ASSERT_EQ(changes.size(), 1U);
     EXPECT_EQ(changes[0].begins, begins);
-    EXPECT_FALSE(changes[0].goes_on);
+    EXPECT_FALSE(changes[0].contact_persists);
     EXPECT_EQ(changes[0].part.begin, 0.2);
   }
 }

@@ -13,12 +13,12 @@ namespace {
 constexpr double weight_of_a_point = 0.00892;  // Table 1
 
 MovingRun run(Movement movement, bool horizontal, MovingVariant variant,
-              const MovingChoices& choices = {}) {
+              const MovingAssumptions& choices = {}) {
   return run_moving_experiment({movement, horizontal, variant}, choices);
 }
 
 TEST(MovingExperiment, AtRestTheGripperCarriesTheWeight) {
-  const MovingChoices still{.angle = 0};
+  const MovingAssumptions still{.angle = 0};
   for (const bool horizontal : {false, true}) {
     const MovingRun held = run(Movement::rotation, horizontal, MovingVariant::dynamic, still);
     ASSERT_EQ(held.status, MovingStatus::finished);
@@ -59,10 +59,10 @@ TEST(MovingExperiment, NeedsMoreStepsExactlyIfSomeWereScaledDown) {
 // Formula 19 is Stoermer-Verlet for points of mass m* with damping rate (1 - c_h)/dt.
 TEST(MovingReading, IsThatOfTable1) {
   const force_model::StepOptions options = moving_step_options(MovingVariant::dynamic, {});
-  const PointReading reading = point_reading(options.c_F, options.c_h);
+  const PointParameters reading = point_parameters(options.c_F, options.c_h);
   EXPECT_NEAR(1e3 * reading.mass, 1.513, 1e-3);
   EXPECT_NEAR(reading.damping_rate, 200, 1e-9);
-  EXPECT_NEAR(point_reading(options.c_F, 0).damping_rate, 4000, 1e-9);
+  EXPECT_NEAR(point_parameters(options.c_F, 0).damping_rate, 4000, 1e-9);
 }
 
 TEST(MovingReference, HoldsTheWeightBeforeAndAfterTheMovement) {
@@ -73,7 +73,7 @@ TEST(MovingReference, HoldsTheWeightBeforeAndAfterTheMovement) {
   EXPECT_LT((reference.forces.back() - Eigen::Vector3d(0, moving_weight(), 0)).norm(), 1e-5);
   // At the end the hanging rod has been displaced as far as its gripper.
   const Eigen::RowVectorXd across = reference.points.back().row(0);
-  EXPECT_LT((across.array() - MovingChoices{}.distance).abs().maxCoeff(), 1e-5);
+  EXPECT_LT((across.array() - MovingAssumptions{}.distance).abs().maxCoeff(), 1e-5);
   const MovingError relative =
       moving_error({Movement::uniform, false, MovingVariant::relative}, {}, reference);
   const MovingError dynamic =
@@ -100,12 +100,12 @@ TEST(MovingReport, PutsPrintedNumbersBesideItsOwn) {
                .limited_steps = row.printed->limited_steps,
                .average_force = row.printed->average_force};
   }
-  const MovingDistance same = moving_distance(rows);
+  const MovingAgreement same = moving_agreement(rows);
   EXPECT_DOUBLE_EQ(same.force_factor, 1);
-  EXPECT_EQ(same.counters_near, 33);
+  EXPECT_EQ(same.matching_counters, 33);
   EXPECT_EQ(same.counters, 33);
   rows[0].run.status = MovingStatus::too_many_steps;
-  EXPECT_TRUE(std::isinf(moving_distance(rows).force_factor));
+  EXPECT_TRUE(std::isinf(moving_agreement(rows).force_factor));
 }
 
 }  // namespace

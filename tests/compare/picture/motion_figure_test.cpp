@@ -18,7 +18,7 @@ namespace dlo::compare {
 namespace {
 
 /// A rod between two clamps, one of which moves; `way` is its poses at 0 and 1 s.
-Scene led(const std::string& way) {
+Scene moving_clamp(const std::string& way) {
   return parse_scene(
       "name = \"led\"\ngravity = [0, 0, -9.81]\n[rod]\nlength = 0.5\nbending_stiffness = 2e-3\n"
       "mass_per_length = 0.05\n[[gripper]]\nat = 0\nposition = [0, 0, 0]\ndirection = [1, 0, 0]\n"
@@ -27,11 +27,11 @@ Scene led(const std::string& way) {
       "led.toml");
 }
 Scene in_plane() {
-  return led(
+  return moving_clamp(
       "pose = [{time = 0, position = [0.4, 0, 0]}, {time = 1, position = [0.44, 0, 0.1]}]\n");
 }
 Scene in_space() {
-  return led(
+  return moving_clamp(
       "pose = [{time = 0, position = [0.4, 0, 0]}, {time = 1, position = [0.4, 0.1, 0.1]}]\n");
 }
 
@@ -55,7 +55,7 @@ MarkerMotion recording(const Scene& scene, double late, double up) {
   return motion;
 }
 
-MotionCheck checked(const Scene& scene, double late, double up) {
+MotionCheck checked_motion(const Scene& scene, double late, double up) {
   return check_motion(scene, recording(scene, late, up), {.explaining = Explaining::no});
 }
 
@@ -77,7 +77,7 @@ Panel error_panel(const MotionCheck& check) {
 TEST(WorstFrame, HasTheRecordingsPointsOnTheRodOfThatTime) {
   const Scene scene = in_plane();
   constexpr double up = 0.02;
-  const MotionCheck check = checked(scene, 0, up);
+  const MotionCheck check = checked_motion(scene, 0, up);
   EXPECT_EQ(check.worst().time, 1.0);
   const Drawing drawing = worst_frame_drawing(check);
   ASSERT_EQ(drawing.views.size(), 1U);
@@ -100,7 +100,7 @@ TEST(WorstFrame, HasTheRecordingsPointsOnTheRodOfThatTime) {
 }
 
 TEST(WorstFrame, OfALateRecordingIsTheRodOfAnEarlierTime) {
-  const MotionCheck check = checked(in_space(), lag, 0);
+  const MotionCheck check = checked_motion(in_space(), lag, 0);
   ASSERT_NEAR(check.lag, lag, 1e-3);
   const Drawing drawing = worst_frame_drawing(check);
   EXPECT_EQ(drawing.views.size(), 2U);
@@ -115,7 +115,7 @@ TEST(WorstFrame, OfALateRecordingIsTheRodOfAnEarlierTime) {
 }
 
 TEST(MotionPicture, HasTheErrorOfEachFrameAndWhatIsLeftWithoutTheLag) {
-  const MotionCheck check = checked(in_plane(), lag, 0);
+  const MotionCheck check = checked_motion(in_plane(), lag, 0);
   const Panel panel = error_panel(check);
   const PlottedCurve* rms = curve_with(panel, "RMS of each frame");
   ASSERT_NE(rms, nullptr);
@@ -132,7 +132,8 @@ TEST(MotionPicture, HasTheErrorOfEachFrameAndWhatIsLeftWithoutTheLag) {
   ASSERT_EQ(left->x.size(), rms->x.size() - 1);
   for (const double distance : left->y) EXPECT_LT(distance, 0.1);
   EXPECT_EQ(curve_with(panel, "the worst frame")->y.front(), *std::ranges::max_element(rms->y));
-  EXPECT_EQ(curve_with(error_panel(checked(in_plane(), 0, 0.02)), "if it were not"), nullptr);
+  EXPECT_EQ(curve_with(error_panel(checked_motion(in_plane(), 0, 0.02)), "if it were not"),
+            nullptr);
 }
 
 // A rod that hangs straight down and is moved vertically.
@@ -143,7 +144,7 @@ TEST(MotionPicture, OfAStraightRodHasFiniteLimits) {
       "mass_per_length = 0.02\n[[gripper]]\nat = 0\ndirection = [0, 0, -1]\n"
       "pose = [{time = 0, position = [0, 0, 0]}, {time = 1, position = [0, 0, 0.1]}]\n",
       "straight.toml");
-  const MotionCheck check = checked(scene, 0, 0.01);
+  const MotionCheck check = checked_motion(scene, 0, 0.01);
   const Picture picture = motion_check_picture(check);
   for (const Panel& drawn : picture.rows.at(0).at(0).at(0).panels) {
     const Panel panel = laid_out(drawn);

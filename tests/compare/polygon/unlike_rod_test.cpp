@@ -139,8 +139,8 @@ TEST(UnlikeRod, SaysWhereNaturalCurvatureIsLeftOut) {
 
 TEST(UnlikeRod, RefusesJointsThatWouldFold) {
   Scene scene = cantilever(80);
-  EXPECT_TRUE(says(error_of<InputError>([&] { return discretise(scene, scene.force_model); }),
-                   {"force_model.points = 16", "5.52 rad", "80 1/m", "points or more"}));
+  EXPECT_TRUE(has_all(error_of<InputError>([&] { return discretise(scene, scene.force_model); }),
+                      {"force_model.points = 16", "5.52 rad", "80 1/m", "points or more"}));
   scene.force_model.points = 59;
   EXPECT_NO_THROW((void)discretise(scene, scene.force_model));
 }

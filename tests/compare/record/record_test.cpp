@@ -23,8 +23,8 @@ using dlo::compare::Scene;
 using dlo::compare::Solution;
 using dlo::compare::SolvedShape;
 using dlo::test::Command;
-using dlo::test::says;
-using dlo::test::says_none;
+using dlo::test::has_all;
+using dlo::test::has_none;
 
 class Record : public Command {
  protected:
@@ -42,20 +42,20 @@ class Record : public Command {
 
 TEST_F(Record, ANumberOfAShapeStandsInEachCommandsOutput) {
   const std::string moving = moving_wire();
-  const std::string text = said(words({"solve", wire()}));
-  const Json solved = Json::parse(said(words({"solve", wire(), "--format json"})));
-  const std::string swept = said(words({"sweep", wire(), "--vary gamma=1"}));
+  const std::string text = output_of(words({"solve", wire()}));
+  const Json solved = Json::parse(output_of(words({"solve", wire(), "--format json"})));
+  const std::string swept = output_of(words({"sweep", wire(), "--vary gamma=1"}));
   const std::string track = words({"track", moving, "--no-force --frame-rate 10"});
-  const std::string tracked = said(track + "--format csv");
-  const Json frame = Json::parse(said(track + "--format json")).at("frames").at(0);
+  const std::string tracked = output_of(track + "--format csv");
+  const Json frame = Json::parse(output_of(track + "--format json")).at("frames").at(0);
   int places = 0;
   for (const Field<SolvedShape>& number : dlo::compare::shape_numbers()) {
     const double value = solved.at(number.key()).get<double>();
     EXPECT_TRUE(std::isfinite(value)) << number.key();
     EXPECT_NEAR(frame.at(number.key()), value, 1e-6) << number.key();
-    EXPECT_NEAR(std::stod(dlo::test::in_first_row(tracked, number.key())), value, 1e-6)
+    EXPECT_NEAR(std::stod(dlo::test::first_row_value(tracked, number.key())), value, 1e-6)
         << number.key();
-    EXPECT_TRUE(std::isfinite(std::stod(dlo::test::in_first_row(swept, number.key()))))
+    EXPECT_TRUE(std::isfinite(std::stod(dlo::test::first_row_value(swept, number.key()))))
         << number.key();
     ++places;
   }
@@ -64,13 +64,13 @@ TEST_F(Record, ANumberOfAShapeStandsInEachCommandsOutput) {
   EXPECT_NEAR(solved.at("link_turns"), 0.5, 1e-3);
   EXPECT_NEAR(solved.at("twist_turns").get<double>() + solved.at("writhe_turns").get<double>(), 0.5,
               1e-3);
-  EXPECT_TRUE(says(text, {"\nlink turns ", "\nturns\n  from [m]"}));
+  EXPECT_TRUE(has_all(text, {"\nlink turns ", "\nturns\n  from [m]"}));
 }
 
 TEST_F(Record, AShapeWithoutFramesHasNoTurns) {
   const std::string rod = std::string(DLO_DATA) + "/scenes/spring_steel_175.toml";
-  EXPECT_TRUE(says_none(said(words({"solve", rod, "--format json"})), {"turns"}));
-  EXPECT_EQ(said(words({"sweep", rod, "--vary gamma=1"})).substr(0, 66),
+  EXPECT_TRUE(has_none(output_of(words({"solve", rod, "--format json"})), {"turns"}));
+  EXPECT_EQ(output_of(words({"sweep", rod, "--vary gamma=1"})).substr(0, 66),
             "row,gamma,tip_x_m,tip_y_m,tip_z_m,energy_J,evaluations,terms,statu");
 }
 

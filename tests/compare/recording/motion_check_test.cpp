@@ -24,7 +24,7 @@ namespace {
 Scene swung_rod() { return load_scene(std::string(DLO_DATA) + "/scenes/swung_rod.toml"); }
 
 /// A cable between two clamps, one of which is led away and up.
-Scene led(const std::function<Eigen::Vector3d(double)>& error = {}) {
+Scene moving_clamp(const std::function<Eigen::Vector3d(double)>& error = {}) {
   std::string text =
       "gravity = [0, 0, -9.81]\n[rod]\nlength = 0.6\nbending_stiffness = 2e-3\n"
       "mass_per_length = 0.05\n[[gripper]]\nat = 0\nposition = [0, 0, 0]\ndirection = [1, 0, 0]\n"
@@ -68,19 +68,20 @@ MarkerMotion at_rest(const Scene& scene, const std::vector<double>& times,
   return motion;
 }
 
-void displace(MarkerMotion& motion, const Eigen::Vector3d& by) {
+void translate_markers(MarkerMotion& motion, const Eigen::Vector3d& by) {
   for (MarkerPosition& at : motion.positions) at.position += by;
 }
 
-const std::vector<double> five = {0.07, 0.15, 0.23, 0.31, 0.39};
+const std::vector<double> marker_positions = {0.07, 0.15, 0.23, 0.31, 0.39};
 constexpr double close_to_rod = 1e-5;  // error of interpolation between frames [m]
 /// Damping that makes a rod with inertia nearly quasi-static, in few steps, for tests of other
 /// properties.
-constexpr RodDamping slow{.material = 0.2};
+constexpr RodDamping strong_damping{.material = 0.2};
 
 TEST(MotionCheck, TheRodAtRestPassesAtTimesBetweenTheModelsFrames) {
   const Scene scene = swung_rod();
-  const MotionCheck check = check_motion(scene, at_rest(scene, uneven_times(0.8, 20), five));
+  const MotionCheck check =
+      check_motion(scene, at_rest(scene, uneven_times(0.8, 20), marker_positions));
   EXPECT_TRUE(check.passes);
   EXPECT_LT(check.errors.rms_m, close_to_rod);
   EXPECT_EQ(check.errors.frames.size(), 21U);
@@ -94,7 +95,8 @@ TEST(MotionCheck, TheRodAtRestPassesAtTimesBetweenTheModelsFrames) {
 TEST(MotionCheck, FindsTheLagOfARecording) {
   const Scene scene = swung_rod();
   for (const double lag : {0.03, -0.02}) {
-    const MotionCheck check = check_motion(scene, at_rest(scene, uneven_times(0.8, 20), five, lag));
+    const MotionCheck check =
+        check_motion(scene, at_rest(scene, uneven_times(0.8, 20), marker_positions, lag));
     EXPECT_FALSE(check.passes) << check.reason;
     EXPECT_NEAR(check.lag, lag, 1e-4);
     EXPECT_LT(check.lag_rms_m, 1e-4);
@@ -105,17 +107,17 @@ TEST(MotionCheck, FindsTheLagOfARecording) {
 
 TEST(MotionCheck, FindsWhereARecordingIsDisplaced) {
   const Scene scene = swung_rod();
-  MarkerMotion motion = at_rest(scene, uneven_times(0.8, 20), five);
+  MarkerMotion motion = at_rest(scene, uneven_times(0.8, 20), marker_positions);
   const Eigen::Vector3d by(6e-3, -2e-3, 3e-3);
-  displace(motion, by);
+  translate_markers(motion, by);
   const MotionCheck check = check_motion(scene, motion);
   EXPECT_NEAR(check.errors.rms_m, by.norm(), close_to_rod);
   EXPECT_NEAR(check.errors.largest_m, by.norm(), 3 * close_to_rod);
   EXPECT_TRUE(std::isnan(check.lag));
   ASSERT_EQ(check.causes.size(), 1U);
   EXPECT_EQ(check.causes.front().words, "the whole recording is displaced by [6, -2, 3] mm");
-  MarkerMotion late = at_rest(scene, uneven_times(0.8, 20), five, 0.02);
-  displace(late, by);
+  MarkerMotion late = at_rest(scene, uneven_times(0.8, 20), marker_positions, 0.02);
+  translate_markers(late, by);
   const MotionCheck both = check_motion(scene, late);
   ASSERT_FALSE(both.causes.empty());
   EXPECT_EQ(both.causes.front().words,
@@ -124,8 +126,9 @@ TEST(MotionCheck, FindsWhereARecordingIsDisplaced) {
 
 TEST(MotionCheck, SaysThatInertiaIsMissing) {
   const Scene scene = swung_rod();
-  const MotionCheck check = check_motion(scene, at_rest(scene, uneven_times(0.8, 40), five),
-                                         {.model = MotionModel::with_inertia});
+  const MotionCheck check =
+      check_motion(scene, at_rest(scene, uneven_times(0.8, 40), marker_positions),
+                   {.model = MotionModel::with_inertia});
   EXPECT_FALSE(check.passes);
   ASSERT_EQ(check.causes.size(), 1U);
   EXPECT_EQ(check.causes.front().words, "it is quasi-static: its inertia is missing");
@@ -157,7 +160,7 @@ TEST(LagSearch, ThinsTimesAndNoMarkers) {
 
 TEST(MotionCheck, MeasuresNoiseAndFindsNoCauseInIt) {
   const Scene scene = swung_rod();
-  MarkerMotion motion = at_rest(scene, uneven_times(0.8, 80), five);
+  MarkerMotion motion = at_rest(scene, uneven_times(0.8, 80), marker_positions);
   constexpr double deviation = 1e-3;
   std::mt19937 random(7);
   std::normal_distribution<double> noise(0, deviation);
@@ -165,7 +168,7 @@ TEST(MotionCheck, MeasuresNoiseAndFindsNoCauseInIt) {
     for (double& coordinate : at.position) coordinate += noise(random);
   }
   const MotionCheck check = check_motion(
-      scene, motion, {.damping = slow, .tolerance = ShapeTolerance{.allowed_m = 1e-3}});
+      scene, motion, {.damping = strong_damping, .tolerance = ShapeTolerance{.allowed_m = 1e-3}});
   // Three standard deviations of the RMS of 1215 coordinates are 6 %.
   EXPECT_NEAR(check.errors.rms_m, deviation * std::sqrt(3), 0.06 * deviation * std::sqrt(3));
   EXPECT_FALSE(check.passes);
@@ -178,7 +181,7 @@ TEST(MotionCheck, SaysWhichFrameAndWhichPartOfTheRod) {
   MarkerMotion motion = at_rest(scene, uneven_times(0.8, 20), {0.05, 0.35});
   MarkerPosition& wrong = motion.positions[2 * 13 + 1];
   wrong.position.z() += 0.02;
-  const MotionCheck check = check_motion(scene, motion, {.damping = slow});
+  const MotionCheck check = check_motion(scene, motion, {.damping = strong_damping});
   EXPECT_EQ(check.errors.worst_frame, 13U);
   EXPECT_NEAR(check.worst().rms_m, 0.02 / std::sqrt(2), close_to_rod);
   EXPECT_NEAR(check.worst().largest_m, 0.02, close_to_rod);
@@ -189,9 +192,10 @@ TEST(MotionCheck, SaysWhichFrameAndWhichPartOfTheRod) {
   EXPECT_NEAR(check.errors.thirds[1].rms_m, 0.02 / std::sqrt(21), close_to_rod);
   ASSERT_EQ(check.errors.markers.size(), 2U);
   EXPECT_NEAR(check.errors.markers[1].largest_m, 0.02, close_to_rod);
-  const MotionCheck by_largest = check_motion(
-      scene, motion,
-      {.damping = slow, .tolerance = ShapeTolerance{.allowed_m = 0.015, .largest = true}});
+  const MotionCheck by_largest =
+      check_motion(scene, motion,
+                   {.damping = strong_damping,
+                    .tolerance = ShapeTolerance{.allowed_m = 0.015, .largest = true}});
   EXPECT_FALSE(by_largest.passes);
   EXPECT_NEAR(by_largest.judged_m, 0.02, close_to_rod);
 }
@@ -199,16 +203,17 @@ TEST(MotionCheck, SaysWhichFrameAndWhichPartOfTheRod) {
 TEST(MotionCheck, FindsAGripperThatIsElsewhere) {
   const std::vector<double> markers = {0.1, 0.2, 0.3, 0.4, 0.5};
   const std::vector<double> times = uneven_times(2, 20);
-  const Scene displaced = led([](double) { return Eigen::Vector3d(4e-3, 8e-3, -6e-3); });
+  const Scene displaced = moving_clamp([](double) { return Eigen::Vector3d(4e-3, 8e-3, -6e-3); });
   const MotionCheckRequest request{
-      .damping = slow, .frame_rate = 15, .tolerance = ShapeTolerance{.allowed_m = 1e-3}};
-  const MotionCheck constant = check_motion(led(), at_rest(displaced, times, markers), request);
+      .damping = strong_damping, .frame_rate = 15, .tolerance = ShapeTolerance{.allowed_m = 1e-3}};
+  const MotionCheck constant =
+      check_motion(moving_clamp(), at_rest(displaced, times, markers), request);
   ASSERT_FALSE(constant.causes.empty());
   EXPECT_TRUE(constant.causes.front().words.starts_with("gripper 2 is displaced b"));
   EXPECT_LT(constant.causes.front().rms_m, 0.1 * constant.errors.rms_m);
-  const Scene astray = led(
+  const Scene off_path = moving_clamp(
       [](double t) { return Eigen::Vector3d(0, 0.01 * std::sin(6 * t), 0.01 * std::sin(3 * t)); });
-  const MotionCheck path = check_motion(led(), at_rest(astray, times, markers), request);
+  const MotionCheck path = check_motion(moving_clamp(), at_rest(off_path, times, markers), request);
   ASSERT_FALSE(path.causes.empty());
   EXPECT_TRUE(path.causes.front().words.starts_with("gripper 2 has another path"));
 }

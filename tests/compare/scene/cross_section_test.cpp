@@ -123,7 +123,7 @@ TEST(CrossSection, OfAStripBendsByItsThicknessWhereItsClampSaysSo) {
 TEST(CrossSection, IsRefusedWhereItIsNone) {
   const auto expect_refused = [](const std::string& section, const std::vector<std::string>& parts,
                                  const std::string& rest = flat_clamp) {
-    EXPECT_TRUE(says(test::scene_error(material_rod(section) + rest), parts));
+    EXPECT_TRUE(has_all(test::scene_error(material_rod(section) + rest), parts));
   };
   expect_refused("diameter = \"4 mm\"\ninner_diameter = \"4 mm\"",
                  {"my.toml:5: rod.inner_diameter", "0 to less than diameter, 0.004 m"});

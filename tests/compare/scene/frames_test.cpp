@@ -42,7 +42,7 @@ Scene read(const std::string& text) { return parse_scene(text, "my.toml"); }
 FrameHold frame_of(const std::string& keys) {
   const Scene scene =
       read(rod + gripper(0, "direction = 0\nroll = 0\n") + gripper(0.5, keys + "\n"));
-  EXPECT_TRUE(scene.holds_twist());
+  EXPECT_TRUE(scene.prescribes_twist());
   return scene.grippers.at(1).frame.value();
 }
 
@@ -88,7 +88,7 @@ TEST(Frames, ADirectionBesideDirectorsIsTheSame) {
 TEST(Frames, OneFrameAloneNeedsNothing) {
   const Scene scene = read(rod_without_torsion + gripper(0, "direction = 0\nroll = 1\n") +
                            gripper(0.5, "direction = 0\n"));
-  EXPECT_FALSE(scene.holds_twist());
+  EXPECT_FALSE(scene.prescribes_twist());
   EXPECT_FALSE(scene.torsional_stiffness);
   EXPECT_TRUE(scene.planar());
   EXPECT_EQ(energy_problem(scene).grips.at(0).frame->roll, 1);
@@ -137,8 +137,8 @@ TEST(Frames, ErrorsNameFileLineKeyAndWhatIsAllowed) {
   };
   for (const BadFrame& bad : cases) {
     const std::string text = error_of<InputError>([&] { return read(bad.text); });
-    EXPECT_TRUE(says(text, bad.named));
-    EXPECT_TRUE(says_none(text, {"\n"}));
+    EXPECT_TRUE(has_all(text, bad.named));
+    EXPECT_TRUE(has_none(text, {"\n"}));
   }
 }
 

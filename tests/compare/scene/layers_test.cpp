@@ -96,7 +96,7 @@ TEST(Layers, SayWhatIsWrong) {
     return test::scene_error(cable_head + rod + cable_tail);
   };
   const auto expect = [&](const std::string& rod, const std::string& message) {
-    EXPECT_TRUE(says(refusal(rod), {message}));
+    EXPECT_TRUE(has_all(refusal(rod), {message}));
   };
   const std::string core = "{ outer_diameter = 1e-3, material = \"copper\" }";
   expect("layers = [" + core + ", " + core + "]\n", "layer 2: outer_diameter");

@@ -63,14 +63,14 @@ Scene copper_wire() {
 }
 
 /// Removes the line numbers, which a scene that was made in code does not have.
-Scene without_lines(Scene scene) {
+Scene without_line_numbers(Scene scene) {
   for (Gripper& gripper : scene.grippers) gripper.where.clear();
   return scene;
 }
 
 TEST(MakeScene, IsTheSceneOfAFileWithTheSameFields) {
-  EXPECT_EQ(without_lines(make_scene(fields, "my.toml")),
-            without_lines(parse_scene(text, "my.toml")));
+  EXPECT_EQ(without_line_numbers(make_scene(fields, "my.toml")),
+            without_line_numbers(parse_scene(text, "my.toml")));
 }
 
 TEST(MakeScene, TakesPosesAndAllElementsOfAList) {
@@ -84,7 +84,7 @@ TEST(MakeScene, TakesPosesAndAllElementsOfAList) {
   moving.push_back({"gripper.2.hold", "pin"});
   const Scene scene = make_scene(moving);
   ASSERT_EQ(scene.grippers.size(), 3U);
-  EXPECT_EQ(motion_of(scene)->end, 1);
+  EXPECT_EQ(motion_time_span(scene)->end, 1);
   EXPECT_EQ(scene.file, "scene");
 }
 
@@ -105,22 +105,24 @@ TEST(MakeScene, RefusesWhatAFileMayNotSayInTheSameWords) {
     wrong.replace(wrong.find(said), said.size(), meant);
     std::vector<SceneField> made = fields;
     made.push_back(field);
-    const std::string of_file = error_of<InputError>([&] { return parse_scene(wrong, "scene"); });
-    const std::string of_code = error_of<InputError>([&] { return make_scene(made); });
+    const std::string file_refusal =
+        error_of<InputError>([&] { return parse_scene(wrong, "scene"); });
+    const std::string scene_refusal = error_of<InputError>([&] { return make_scene(made); });
     // But for the line, from the key on.
     const std::string key = field.field.substr(field.field.rfind('.') + 1);
-    ASSERT_TRUE(says(of_file, {key}));
-    ASSERT_TRUE(says(of_code, {key}));
-    EXPECT_EQ(of_code.substr(of_code.find(key)), of_file.substr(of_file.find(key)));
-    EXPECT_EQ(of_code.rfind("scene", 0), 0U) << of_code;
+    ASSERT_TRUE(has_all(file_refusal, {key}));
+    ASSERT_TRUE(has_all(scene_refusal, {key}));
+    EXPECT_EQ(scene_refusal.substr(scene_refusal.find(key)),
+              file_refusal.substr(file_refusal.find(key)));
+    EXPECT_EQ(scene_refusal.rfind("scene", 0), 0U) << scene_refusal;
   }
 }
 
 TEST(MakeScene, SaysWhichElementIsMissing) {
   std::vector<SceneField> made = fields;
   made.push_back({"gripper.4.at", 0});
-  EXPECT_TRUE(says(error_of<InputError>([&] { return make_scene(made); }), {"allowed: 0 to 1"}));
-  EXPECT_TRUE(says(error_of<InputError>([] { return make_scene({}); }), {"rod"}));
+  EXPECT_TRUE(has_all(error_of<InputError>([&] { return make_scene(made); }), {"allowed: 0 to 1"}));
+  EXPECT_TRUE(has_all(error_of<InputError>([] { return make_scene({}); }), {"rod"}));
 }
 
 // Arc lengths beyond an end by the rounding error of a sum of segments.
@@ -132,7 +134,7 @@ TEST(ArcLengths, ARoundingBeyondAnEndAreThatEnd) {
   EXPECT_EQ(make_scene(rounded).grippers[0].at, 0);
   rounded.push_back({"gripper.1.at", 0.3001});
   EXPECT_TRUE(
-      says(error_of<InputError>([&] { return make_scene(rounded); }), {"allowed: 0 to 0.3 m"}));
+      has_all(error_of<InputError>([&] { return make_scene(rounded); }), {"allowed: 0 to 0.3 m"}));
   EXPECT_EQ(*on_rod(0.3 + 1e-8, 0.3), 0.3);
   EXPECT_FALSE(on_rod(0.3 + 1e-6, 0.3));
   EXPECT_FALSE(on_rod(std::nan(""), 0.3));

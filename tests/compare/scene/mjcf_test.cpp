@@ -140,7 +140,7 @@ TEST(Mjcf, MuJoCosOwnPointsPassWithoutTheirLastEnd) {
   ASSERT_EQ(shape.points.cols(), 21);
   const Eigen::Vector3d end = shape.points.col(20);
   shape.points.conservativeResize(Eigen::NoChange, 20);
-  const MeasuredShape whole = whole_of_segment_starts(scene, shape);
+  const MeasuredShape whole = complete_segment_starts(scene, shape);
   ASSERT_EQ(whole.points.cols(), 21);
   // The last joint turns by a quarter of what the one before does, within its own size:
   // w h^2 / 2 / (EI / h), with w l = 0.567 N.
@@ -150,8 +150,8 @@ TEST(Mjcf, MuJoCosOwnPointsPassWithoutTheirLastEnd) {
   MeasuredShape all = shape;
   all.points.resize(3, 21);
   all.points << Eigen::Vector3d(0, 0, 0.3), shape.points;
-  EXPECT_EQ(whole_of_segment_starts(scene, all).points.cols(), 21);
-  EXPECT_EQ(whole_of_segment_starts(scene, all).points.col(0), shape.points.col(0));
+  EXPECT_EQ(complete_segment_starts(scene, all).points.cols(), 21);
+  EXPECT_EQ(complete_segment_starts(scene, all).points.col(0), shape.points.col(0));
 }
 
 struct Refused {
@@ -189,8 +189,8 @@ TEST(Mjcf, WhatARodCannotSayIsNamed) {
     const std::string text = changed(mjcf_text(bad.file), bad.piece, bad.other);
     const std::string message = error_of<InputError>([&] { return parse_scene(text, "mine.xml"); });
     EXPECT_EQ(message.rfind("mine.xml:", 0), 0U) << message;
-    EXPECT_TRUE(says_none(message, {"\n"}));
-    EXPECT_TRUE(says(message, bad.message));
+    EXPECT_TRUE(has_none(message, {"\n"}));
+    EXPECT_TRUE(has_all(message, bad.message));
   }
 }
 
@@ -199,8 +199,8 @@ TEST(Mjcf, AllRefusalsOfAFileAreInOneMessage) {
   text = changed(text, "</worldbody>", "</worldbody><tendon/>");
   text = changed(text, "<mujoco", "<mujoco colour=\"red\"");
   const std::string message = error_of<InputError>([&] { return parse_scene(text, "mine.xml"); });
-  EXPECT_TRUE(says(message, {"mine.xml:4: <joint>", "<tendon>", "<mujoco> colour", "; "}));
-  EXPECT_TRUE(says_none(message, {"\n"}));
+  EXPECT_TRUE(has_all(message, {"mine.xml:4: <joint>", "<tendon>", "<mujoco> colour", "; "}));
+  EXPECT_TRUE(has_none(message, {"\n"}));
 }
 
 /// Actuators, sensors, sites and bodies without mass have no part in a shape at rest.
@@ -215,8 +215,8 @@ TEST(Mjcf, PartsWithoutEffectAtRestAreIgnoredAndListed) {
   EXPECT_EQ(scene.bending_stiffness(), plain.bending_stiffness());
   EXPECT_EQ(scene.mass(), plain.mass());
   EXPECT_EQ(scene.model->segments, plain.model->segments);
-  EXPECT_TRUE(says(fmt::format("{}", fmt::join(scene.model->notes, "\n")),
-                   {"ignored: 1 actuator, 2 sensors, 1 site", "\"spot\" is ignored"}));
+  EXPECT_TRUE(has_all(fmt::format("{}", fmt::join(scene.model->notes, "\n")),
+                      {"ignored: 1 actuator, 2 sensors, 1 site", "\"spot\" is ignored"}));
 }
 
 /// A slide or free joint of the first body is ignored: if nothing else holds the cable, its first
@@ -231,7 +231,7 @@ TEST(Mjcf, SlideAndFreeJointsOfTheBaseAreIgnored) {
     ASSERT_EQ(scene.grippers.size(), 1U);
     EXPECT_EQ(scene.grippers[0].position, fixed.grippers[0].position);
     EXPECT_EQ(scene.grippers[0].direction, fixed.grippers[0].direction);
-    EXPECT_TRUE(says(scene.model->notes.front(), {"\"b0\" is ignored", "fixed"}));
+    EXPECT_TRUE(has_all(scene.model->notes.front(), {"\"b0\" is ignored", "fixed"}));
   }
 }
 

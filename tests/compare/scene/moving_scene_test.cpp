@@ -24,12 +24,12 @@ const std::string two_poses =
 TEST(MovingScene, IsAtItsFirstPoseUnlessATimeIsAskedFor) {
   const Scene scene = parse_scene(held_rod + two_poses, "my.toml");
   EXPECT_EQ(scene.grippers[0].position, Eigen::Vector3d::Zero());
-  EXPECT_EQ(motion_of(scene)->begin, 1);
-  EXPECT_EQ(motion_of(scene)->end, 3);
+  EXPECT_EQ(motion_time_span(scene)->begin, 1);
+  EXPECT_EQ(motion_time_span(scene)->end, 3);
   const Scene half = scene_at(scene, 2);
   EXPECT_LT((half.grippers[0].position - Eigen::Vector3d(0.1, 0, 0)).norm(), 1e-15);
   EXPECT_LT((*half.grippers[0].direction - Eigen::Vector3d(1, 1, 0).normalized()).norm(), 1e-15);
-  EXPECT_FALSE(motion_of(half));
+  EXPECT_FALSE(motion_time_span(half));
   EXPECT_EQ(half.length, scene.length);
 }
 
@@ -60,14 +60,14 @@ TEST(MovingScene, ReadsPosesFromAFileBesideIt) {
   const Scene scene = parse_scene(text, folder + "my.toml");
   EXPECT_EQ(scene_at(scene, 1).grippers[0].position.x(), 0.5);
   std::ofstream(folder + "way.csv") << "time,x,y,z\n0,0,0,nowhere\n";
-  EXPECT_TRUE(says(error_of<InputError>([&] { return parse_scene(text, folder + "my.toml"); }),
-                   {"my.toml:8: gripper.trajectory = 'way.csv': way.csv:2: "
-                    "z = \"nowhere\""}));
+  EXPECT_TRUE(has_all(error_of<InputError>([&] { return parse_scene(text, folder + "my.toml"); }),
+                      {"my.toml:8: gripper.trajectory = 'way.csv': way.csv:2: "
+                       "z = \"nowhere\""}));
 }
 
 TEST(MovingScene, SaysWhatIsWrongWithAPose) {
   const auto expect_error = [](const std::string& text, const std::string& part) {
-    EXPECT_TRUE(says(scene_error(text), {part}));
+    EXPECT_TRUE(has_all(scene_error(text), {part}));
   };
   const std::string first = "[[gripper.pose]]\ntime = 0\nposition = [0, 0, 0]\n";
   expect_error(held_rod + "position = [0, 0, 0]\n" + two_poses,

@@ -79,15 +79,15 @@ TEST(NaturalSection, MayBeTwistedOrBentAboutBothAxes) {
 }
 
 TEST(NaturalSection, SaysWhatIsWrong) {
-  EXPECT_TRUE(says(scene_error(wire_arcs + wire_head + test::first_pin),
-                   {"section.natural_curvature", "no gripper holds the rod's frame"}));
+  EXPECT_TRUE(has_all(scene_error(wire_arcs + wire_head + test::first_pin),
+                      {"section.natural_curvature", "no gripper holds the rod's frame"}));
   const std::string empty =
       scene_error(wire_head + "[[section]]\nfrom = 0\nto = 0.1\n" + wire_clamp);
-  EXPECT_TRUE(says(empty, {"one of the five or more"}));
+  EXPECT_TRUE(has_all(empty, {"one of the five or more"}));
   const std::string rows = scene_error(
       wire_head + "[[section]]\nfrom = 0\nto = 0.1\nnatural_curvature = [[0, 1], [0, 2]]\n" +
       wire_clamp);
-  EXPECT_TRUE(says(rows, {"section.natural_curvature"}));
+  EXPECT_TRUE(has_all(rows, {"section.natural_curvature"}));
 }
 
 }  // namespace

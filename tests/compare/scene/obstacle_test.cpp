@@ -23,7 +23,7 @@ double clearance(const std::string& shape, const std::string& keys, const Eigen:
 }
 
 void expect_refused(const std::string& keys, const std::vector<std::string>& parts) {
-  EXPECT_TRUE(says(test::scene_error(over_a_rod + keys), parts));
+  EXPECT_TRUE(has_all(test::scene_error(over_a_rod + keys), parts));
 }
 
 // The rod's axis stays half of its diameter, 10 mm, away from an obstacle that its surface touches.

@@ -77,8 +77,8 @@ Scene resting_scene(const RestShape& shape, double length) {
 }
 
 /// The farthest that points at equal arc lengths of a curve are from a solved shape's.
-double farthest(const Scene& scene, Model model,
-                const std::function<Eigen::Vector3d(double)>& curve) {
+double largest_distance_from_curve(const Scene& scene, Model model,
+                                   const std::function<Eigen::Vector3d(double)>& curve) {
   std::vector<double> s;
   for (int i = 0; i <= 60; ++i) s.push_back(scene.length * i / 60);
   const Eigen::Matrix3Xd points = solve_reference(scene, model).sample(s).points;
@@ -113,10 +113,11 @@ TEST(RestShape, ARodThatIsHeldByOneEndComesBackToTheStatedError) {
   EXPECT_GT(helix.arcs.size(), 8);
   EXPECT_LT(helix.largest_error, 5e-5 * helix_length);
   for (const Model model : {Model::energy, Model::exact}) {
-    EXPECT_LT(farthest(bent, model, on_shaft), shaft.largest_error + 1e-9) << to_string(model);
+    EXPECT_LT(largest_distance_from_curve(bent, model, on_shaft), shaft.largest_error + 1e-9)
+        << to_string(model);
     // The arc lengths of the points are unknown: they may be shifted along the helix by as much as
     // the shape is inaccurate.
-    EXPECT_LT(farthest(resting_scene(helix, helix_length), model, on_helix),
+    EXPECT_LT(largest_distance_from_curve(resting_scene(helix, helix_length), model, on_helix),
               2 * helix.largest_error)
         << to_string(model);
   }
@@ -152,7 +153,7 @@ TEST(RestShape, IsReadFromAFile) {
                          "rest_shape = \"rest_points.csv\"\n"
                       << test::level_clamp;
   const Scene scene = load_scene(file);
-  EXPECT_LT(farthest(scene, Model::energy, on_shaft), 1e-8);
+  EXPECT_LT(largest_distance_from_curve(scene, Model::energy, on_shaft), 1e-8);
 }
 
 std::string refusal(const std::string& rod) {
@@ -162,7 +163,7 @@ std::string refusal(const std::string& rod) {
 
 TEST(RestShape, SaysWhatIsWrong) {
   const auto expect = [](const std::string& rod, const std::string& message) {
-    EXPECT_TRUE(says(refusal(rod), {message}));
+    EXPECT_TRUE(has_all(refusal(rod), {message}));
   };
   expect("rest_shape = \"none.csv\"\n", "no such file beside the scene");
   expect("rest_shape = [[0, 0, 0], [0.5, 0, 0]]\n", "2 points (allowed: 5 or more");
@@ -194,7 +195,8 @@ TEST(Helix, ReturnsItsOwnPointsOfEitherHand) {
       return Eigen::Vector3d(p.x(), p.y(), hand * p.z());
     };
     for (const Model model : {Model::energy, Model::exact}) {
-      EXPECT_LT(farthest(helix_scene(hand * helix_pitch, 0), model, curve), 1e-9 * helix_length)
+      EXPECT_LT(largest_distance_from_curve(helix_scene(hand * helix_pitch, 0), model, curve),
+                1e-9 * helix_length)
           << to_string(model) << hand;
     }
   }
@@ -229,7 +231,7 @@ Scene flat_helix(const RestShape& shape) {
 }
 
 /// The farthest that points and d1 of a solved shape are from the helix [m, rad].
-Eigen::Vector2d away_from_helix(const Scene& scene, Model model, double extra) {
+Eigen::Vector2d largest_distance_from_helix(const Scene& scene, Model model, double extra) {
   const Solution solution = solve(scene, model, {}, equal_arc_lengths(helix_length, 61));
   Eigen::Vector2d most = Eigen::Vector2d::Zero();
   for (Eigen::Index i = 0; i <= 60; ++i) {
@@ -260,7 +262,7 @@ TEST(RestFrames, OfAFlatSectionThatTwistsOtherwiseComeBackToTheStatedErrors) {
     const Scene scene = flat_helix(shape);
     EXPECT_TRUE(scene.naturally_twisted());
     for (const Model model : {Model::energy, Model::exact}) {
-      const Eigen::Vector2d away = away_from_helix(scene, model, extra);
+      const Eigen::Vector2d away = largest_distance_from_helix(scene, model, extra);
       EXPECT_LT(away[0], 1.1 * shape.largest_error) << to_string(model) << extra;
       EXPECT_LT(away[1], 1.1 * shape.largest_angle.value()) << to_string(model) << extra;
     }
@@ -273,7 +275,7 @@ TEST(RestFrames, ConvergeWithTheNumberOfPoints) {
   std::vector<Eigen::Vector2d> away;
   for (const int count : {22, 43, 86}) {
     const RestShape shape = fit_rest_shape(framed_helix(count, 20), helix_length);
-    away.push_back(away_from_helix(flat_helix(shape), Model::exact, 20));
+    away.push_back(largest_distance_from_helix(flat_helix(shape), Model::exact, 20));
   }
   for (std::size_t i = 0; i + 1 < away.size(); ++i) {
     EXPECT_GT(std::log2(away[i][0] / away[i + 1][0]), 2.9);
@@ -330,7 +332,7 @@ TEST(RestFrames, SmoothNoise) {
   }
   const RestShape shape = fit_rest_shape(points, helix_length);
   EXPECT_LT(shape.arcs.size(), 4);
-  const Eigen::Vector2d away = away_from_helix(flat_helix(shape), Model::energy, 0);
+  const Eigen::Vector2d away = largest_distance_from_helix(flat_helix(shape), Model::energy, 0);
   EXPECT_LT(away[0], 3e-4);
   EXPECT_LT(away[1], 2e-2);
   EXPECT_GT(shape.largest_angle.value(), 1e-2);
@@ -338,7 +340,7 @@ TEST(RestFrames, SmoothNoise) {
 
 TEST(RestFrames, SayWhatIsWrong) {
   const auto expect = [](const std::string& text, const std::string& message) {
-    EXPECT_TRUE(says(
+    EXPECT_TRUE(has_all(
         error_of<InputError>([&] { return fit_rest_shape(parse_shape(text, "mine.csv"), 0.4); }),
         {message}));
   };
@@ -353,8 +355,8 @@ TEST(RestFrames, SayWhatIsWrong) {
   expect("x,y,d1_x,d1_z\n", "mine.csv:1: 2 of the columns d1_x, d1_y, d1_z (allowed: all");
   expect(R"({"points": [[0,0],[1,0]], "d1": [[0,1]]})",
          "d1: 1 vectors of 2 points (allowed: one a point, or none)");
-  EXPECT_TRUE(
-      says(refusal("rest_shape = [[0,0,0,0,0,1], [0.5,0,0]]\n"), {"six with a vector in every"}));
+  EXPECT_TRUE(has_all(refusal("rest_shape = [[0,0,0,0,0,1], [0.5,0,0]]\n"),
+                      {"six with a vector in every"}));
 }
 
 TEST(Helix, IsAKeyOfTheRod) {

@@ -35,7 +35,7 @@ const std::string clamp = test::level_clamp;
 Scene scene_of(const std::string& text) { return parse_scene(text, "my.toml"); }
 
 void expect_message(const std::string& text, const std::vector<std::string>& parts) {
-  EXPECT_TRUE(says(scene_error(text), parts));
+  EXPECT_TRUE(has_all(scene_error(text), parts));
 }
 
 TEST(ScenesRod, IsGivenByItsStiffnessAndItsMass) {
@@ -161,7 +161,7 @@ TEST(ScenesNaturalCurvature, IsToTheLeftInThePlane) {
   const Scene scene = scene_of(curved + clamp);
   EXPECT_EQ(scene.natural_strain, Eigen::Vector3d(0, 3, 0));
   EXPECT_TRUE(scene.planar());
-  EXPECT_FALSE(scene.holds_twist());
+  EXPECT_FALSE(scene.prescribes_twist());
   // The tangent turns from +x to +y, about +z.
   EXPECT_NEAR((scene.natural_curvature() - Eigen::Vector3d(0, 0, 3)).norm(), 0, 1e-12);
   EXPECT_TRUE(scene.assumes_torsion());
@@ -238,12 +238,12 @@ TEST(ScenesNaturalCurvature, NeedsAClampThatSaysAboutWhichAxis) {
 TEST(ScenesNaturalCurvature, MakesTheFirstClampHoldItsFrame) {
   const std::string far = "[[gripper]]\nat = 2\nposition = [1, 0, 0]\ndirection = \"0 deg\"\n";
   const std::string held = far + "roll = \"90 deg\"\n";
-  EXPECT_FALSE(scene_of(by_stiffness + clamp + held).holds_twist());
+  EXPECT_FALSE(scene_of(by_stiffness + clamp + held).prescribes_twist());
   const std::string curved = by_stiffness + "natural_curvature = 2\n";
-  EXPECT_FALSE(scene_of(curved + clamp + far).holds_twist());
+  EXPECT_FALSE(scene_of(curved + clamp + far).prescribes_twist());
   const Scene scene = scene_of(curved + clamp + held);
-  EXPECT_TRUE(scene.holds_twist());
-  EXPECT_FALSE(scene.without_twist().holds_twist());
+  EXPECT_TRUE(scene.prescribes_twist());
+  EXPECT_FALSE(scene.without_twist().prescribes_twist());
 }
 
 const std::string flat = R"([rod]
@@ -308,8 +308,8 @@ TEST(ScenesStrip, IsRefusedWithWhatIsAllowed) {
   expect_message(flat + clamp + "[[load]]\nat = 2\nforce = [0, 0, 1]\n",
                  {"my.toml:5", "rod.bending_stiffness", "no plane", "frame or quaternion"});
   const Scene scene = scene_of(flat + clamp);
-  EXPECT_TRUE(says(error_of<InputError>([&] { return discretise(scene, scene.force_model); }),
-                   {"my.toml", "rod.bending_stiffness", "two values", "allowed here"}));
+  EXPECT_TRUE(has_all(error_of<InputError>([&] { return discretise(scene, scene.force_model); }),
+                      {"my.toml", "rod.bending_stiffness", "two values", "allowed here"}));
 }
 
 TEST(ScenesLoad, MayBeAMassThatHangsThere) {

@@ -109,8 +109,8 @@ TEST(Scene, ErrorsNameFileLineKeyValueAndWhatIsAllowed) {
   };
   for (const BadScene& bad : cases) {
     const std::string text = scene_error(bad.text);
-    EXPECT_TRUE(says(text, bad.named));
-    EXPECT_TRUE(says_none(text, {"\n"}));
+    EXPECT_TRUE(has_all(text, bad.named));
+    EXPECT_TRUE(has_none(text, {"\n"}));
   }
 }
 
@@ -134,7 +134,7 @@ TEST(Scene, NamesAnUnknownKeyBeforeTheOneThatIsMissingForIt) {
       {"thread = 1\n" + good_gripper, "thread = 1"},
   };
   for (const auto& [text, key] : cases) {
-    EXPECT_TRUE(says(scene_error(text), {key + ": unknown key"}));
+    EXPECT_TRUE(has_all(scene_error(text), {key + ": unknown key"}));
   }
 }
 

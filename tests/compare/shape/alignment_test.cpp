@@ -57,7 +57,7 @@ TEST(Alignment, AShiftedShapeIsNotReversedByRounding) {
     EXPECT_FALSE(found.reversed) << shift;
     EXPECT_LT(found.rms_m, 1e-6) << shift;
     EXPECT_NEAR(found.shape.arc_length.back(), 1, 1e-3) << shift;
-    EXPECT_GT(found.other_rms_m, 0.1) << shift;
+    EXPECT_GT(found.opposite_direction_rms_m, 0.1) << shift;
   }
 }
 
@@ -69,18 +69,18 @@ TEST(Alignment, ManyPointsLieAsNearAsTheyCan) {
   const energy_model::Equilibrium energy = solve_reference(scene, Model::energy);
   const std::vector<double> s = equal_arc_lengths(1, 2001);
   for (const bool backwards : {false, true}) {
-    MeasuredShape seen{"dense", with_noise(energy.sample(s).points, 2e-3, random), {}};
-    if (backwards) seen = test::reversed(seen);
-    const double where_it_was = align(seen, energy.sample, 1, {}).mean_square;
+    MeasuredShape measured{"dense", with_noise(energy.sample(s).points, 2e-3, random), {}};
+    if (backwards) measured = test::reversed(measured);
+    const double where_it_was = align(measured, energy.sample, 1, {}).mean_square;
     const RigidMotion pose = random_pose(random);
-    seen.points = pose.applied(seen.points);
-    const Alignment found = align(seen, energy.sample, 1, any_motion);
+    measured.points = pose.applied(measured.points);
+    const Alignment found = align(measured, energy.sample, 1, any_motion);
     EXPECT_EQ(found.reversed, backwards);
     EXPECT_TRUE(std::ranges::is_sorted(found.shape.arc_length));
     EXPECT_LT(found.mean_square, where_it_was);
     // Six numbers of four thousand are fitted.
     EXPECT_GT(found.mean_square, 0.99 * where_it_was);
-    EXPECT_GT(found.other_rms_m, 2 * found.rms_m);
+    EXPECT_GT(found.opposite_direction_rms_m, 2 * found.rms_m);
     EXPECT_LT(largest_distance(found.pose.applied(pose.applied(energy.sample(s).points)),
                                energy.sample(s).points),
               1e-3);
@@ -121,8 +121,8 @@ TEST(Alignment, MissingStretchesAreNotFilled) {
   double sum = 0;
   constexpr int draws = 100;
   for (int draw = 0; draw < draws; ++draw) {
-    const MeasuredShape seen{"seen", with_noise(energy.sample(s).points, 1e-4, random), {}};
-    const Alignment found = align(seen, energy.sample, 1, {.weights = PointWeights::equal});
+    const MeasuredShape measured{"seen", with_noise(energy.sample(s).points, 1e-4, random), {}};
+    const Alignment found = align(measured, energy.sample, 1, {.weights = PointWeights::equal});
     EXPECT_EQ(found.arc_lengths, ArcLengths::nearest);
     ASSERT_EQ(found.shape.arc_length.size(), s.size());
     for (std::size_t i = 0; i < s.size(); ++i) EXPECT_NEAR(found.shape.arc_length[i], s[i], 5e-4);

@@ -54,13 +54,13 @@ TEST(ForeignShape, ATableOfNodesNeedsNoHeader) {
   const MeasuredShape named = parse_shape("node,x,y,z,u_x\n1,0,0,0,7\n2,0.1,0,0,7\n", "f");
   EXPECT_EQ(named.points(0, 1), 0.1);
   ASSERT_EQ(named.notes.size(), 1U);
-  EXPECT_TRUE(says(named.notes[0], {"u_x"}));
+  EXPECT_TRUE(has_all(named.notes[0], {"u_x"}));
 }
 
 void expect_file_refused(const std::string& name, const std::vector<std::string>& pieces) {
   const std::string message = error_of<InputError>([&] { return load_shape(corpus + name); });
-  EXPECT_TRUE(says_none(message, {"\n"}));
-  EXPECT_TRUE(says(message, pieces));
+  EXPECT_TRUE(has_none(message, {"\n"}));
+  EXPECT_TRUE(has_all(message, pieces));
 }
 
 TEST(ForeignShape, SeveralFramesAreNamed) {
@@ -82,14 +82,14 @@ TEST(ForeignShape, ArchivesAndXmlNameThePageThatConvertsThem) {
   const std::string page = "doc/howto/read_nodes.md";
   for (const std::string text :
        {"<?xml version=\"1.0\"?>\n<VTKFile type=\"PolyData\"/>\n", "\n <VTKFile/>"}) {
-    EXPECT_TRUE(says(error_of<InputError>([&] { return parse_shape(text, "rod.vtu"); }),
-                     {"rod.vtu: XML such as VTU or VTP", page}));
+    EXPECT_TRUE(has_all(error_of<InputError>([&] { return parse_shape(text, "rod.vtu"); }),
+                        {"rod.vtu: XML such as VTU or VTP", page}));
   }
   const std::string archive = std::string("PK\x03\x04") + std::string(40, '\0');
-  EXPECT_TRUE(says(error_of<InputError>([&] { return parse_shape(archive, "rod.npz"); }),
-                   {"rod.npz: a zip archive such as NPZ", page}));
-  EXPECT_TRUE(says(error_of<InputError>([&] { return parse_markers(archive, "rod.npz"); }),
-                   {"rod.npz", "allowed: CSV", page}));
+  EXPECT_TRUE(has_all(error_of<InputError>([&] { return parse_shape(archive, "rod.npz"); }),
+                      {"rod.npz: a zip archive such as NPZ", page}));
+  EXPECT_TRUE(has_all(error_of<InputError>([&] { return parse_markers(archive, "rod.npz"); }),
+                      {"rod.npz", "allowed: CSV", page}));
 }
 
 TEST(ForeignShape, ACutArrayIsRefusedWhereverItIsCut) {

@@ -90,8 +90,8 @@ void expect_refused(const std::vector<Malformed>& cases, double unit = 1) {
   for (const Malformed& bad : cases) {
     const std::string message =
         error_of<InputError>([&] { return parse_shape(bad.text, "mine", unit); });
-    EXPECT_TRUE(says_none(message, {"\n"}));
-    EXPECT_TRUE(says(message, bad.message));
+    EXPECT_TRUE(has_none(message, {"\n"}));
+    EXPECT_TRUE(has_all(message, bad.message));
   }
 }
 

@@ -21,12 +21,12 @@ namespace dlo::compare {
 namespace {
 
 /// A random rod and its right shape.
-struct Right {
+struct RandomRod {
   Scene scene;
   energy_model::Equilibrium rod;
   std::vector<double> s;
 
-  explicit Right(std::mt19937& random) {
+  explicit RandomRod(std::mt19937& random) {
     std::uniform_real_distribution<double> degrees(-170, 170);
     std::uniform_real_distribution<double> exponent(-0.3, 1.3);
     const double pitch = degrees(random);
@@ -59,7 +59,7 @@ struct Right {
 
 /// Difference in length between 20 chords and their arcs: the sum of k^2 h^3 / 24, for Gamma = 20
 /// with its boundary layer of length Gamma^(-1/2) and curvature Gamma^(1/2) at the clamp.
-constexpr double bow = 20.0 / 24 * 0.05 * 0.05 * 0.25;
+constexpr double arc_chord_difference = 20.0 / 24 * 0.05 * 0.05 * 0.25;
 
 /// Whether it passes as the whole rod, with RMS and largest deviation compared with the same
 /// length.
@@ -70,9 +70,9 @@ bool passes(const ShapeCheck& check, double allowed_m) {
 
 class AnyRightShape : public testing::TestWithParam<bool> {
  protected:
-  void for_each(const std::function<void(const Right&)>& claim) {
+  void for_each(const std::function<void(const RandomRod&)>& claim) {
     for (int draw = 0; draw < 4; ++draw) {
-      const Right right(random_);
+      const RandomRod right(random_);
       SCOPED_TRACE(testing::Message() << "Gamma = " << right.scene.gamma());
       claim(right);
     }
@@ -86,9 +86,9 @@ INSTANTIATE_TEST_SUITE_P(ArcLengths, AnyRightShape, testing::Bool(), [](const au
 });
 
 TEST_P(AnyRightShape, Passes) {
-  for_each([](const Right& right) {
+  for_each([](const RandomRod& right) {
     const ShapeCheck check = right.check(right.points(right.s), column_s());
-    EXPECT_LT(check.whole_max_m, 1e-7);
+    EXPECT_LT(check.whole_rod_max_m, 1e-7);
     EXPECT_TRUE(passes(check, 1e-4)) << judge(check, {.allowed_m = 1e-4}).reason;
     EXPECT_EQ(check.hint, "");
   });
@@ -96,7 +96,7 @@ TEST_P(AnyRightShape, Passes) {
 
 TEST_P(AnyRightShape, NoPointMovesUnseen) {
   constexpr double d = 0.02;
-  for_each([=](const Right& right) {
+  for_each([=](const RandomRod& right) {
     const Eigen::Matrix3Xd tangents = right.rod.sample(right.s).tangents;
     for (Eigen::Index i = 0; i < 21; ++i) {
       const Eigen::Vector3d t = tangents.col(i);
@@ -117,12 +117,12 @@ TEST_P(AnyRightShape, NoPointMovesUnseen) {
 }
 
 TEST_P(AnyRightShape, DoublePointsDiluteNothing) {
-  for_each([](const Right& right) {
+  for_each([](const RandomRod& right) {
     Eigen::Matrix3Xd points = right.points(right.s);
     points.col(11).z() += 0.02;
     const double before = right.check(points, column_s()).deviation.rms_m;
     // Each of the first ten points is given a hundred times, 1e-8 apart.
-    Right many = right;
+    RandomRod many = right;
     std::vector<double> s;
     for (std::size_t i = 0; i < right.s.size(); ++i) {
       for (int k = 0; k < (i < 10 ? 100 : 1); ++k) s.push_back(right.s[i] + 1e-8 * k);
@@ -136,8 +136,8 @@ TEST_P(AnyRightShape, DoublePointsDiluteNothing) {
 
 // A spike at one point of the rod counts, however many points form it.
 TEST_P(AnyRightShape, ASpikeCounts) {
-  for_each([](const Right& right) {
-    Right spiked = right;
+  for_each([](const RandomRod& right) {
+    RandomRod spiked = right;
     std::vector<double> s;
     for (std::size_t i = 0; i < right.s.size(); ++i) {
       for (int k = 0; k < (i == 10 ? 9 : 1); ++k) s.push_back(right.s[i] + 1e-7 * k);
@@ -154,7 +154,7 @@ TEST_P(AnyRightShape, ASpikeCounts) {
 
 TEST_P(AnyRightShape, AStretchedPartShows) {
   std::uniform_real_distribution<double> from(0, 0.6);
-  for_each([&](const Right& right) {
+  for_each([&](const RandomRod& right) {
     const double a = from(random_);
     const double b = a + 0.3;
     std::vector<double> at = right.s;
@@ -168,56 +168,58 @@ TEST_P(AnyRightShape, AStretchedPartShows) {
     EXPECT_NEAR(check.deviation.rms_m, 0.03 * std::sqrt(share), column_s() ? 5e-4 : 4e-3);
     EXPECT_FALSE(passes(check, 0.01));
     if (!column_s()) {
-      EXPECT_NEAR(check.excess_m, 0.03, bow);
-      EXPECT_TRUE(says(check.hint, {"stretched by 3"}));
+      EXPECT_NEAR(check.length_beyond_ends_m, 0.03, arc_chord_difference);
+      EXPECT_TRUE(has_all(check.hint, {"stretched by 3"}));
     }
   });
 }
 
 TEST_P(AnyRightShape, ACutFileIsNamed) {
-  for_each([](const Right& right) {
+  for_each([](const RandomRod& right) {
     for (const Eigen::Index kept : {20, 18, 15, 11, 6}) {
-      Right cut = right;
+      RandomRod cut = right;
       cut.s.resize(static_cast<std::size_t>(kept));
       const ShapeCheck check = cut.check(right.points(right.s).leftCols(kept), column_s());
       const double seen = static_cast<double>(kept - 1) / 20;
       const Eigen::Matrix3Xd ends = right.points({seen, 1});
       EXPECT_LT(check.deviation.max_m, 1e-7);
-      EXPECT_NEAR(check.whole_max_m, (ends.col(1) - ends.col(0)).norm(), 1e-3);
+      EXPECT_NEAR(check.whole_rod_max_m, (ends.col(1) - ends.col(0)).norm(), 1e-3);
       // The distance of the rod from the outermost point is at most the length of the missing part,
       // and close to it.
-      EXPECT_LE(check.whole_rms_m, (1 + 1e-4) * std::sqrt(std::pow(1 - seen, 3) / 3));
-      EXPECT_GT(check.whole_rms_m, 0.5 * std::sqrt(std::pow(1 - seen, 3) / 3));
+      EXPECT_LE(check.whole_rod_rms_m, (1 + 1e-4) * std::sqrt(std::pow(1 - seen, 3) / 3));
+      EXPECT_GT(check.whole_rod_rms_m, 0.5 * std::sqrt(std::pow(1 - seen, 3) / 3));
       const ShapeJudgement whole = judge(check, {.allowed_m = 0.0015});
       EXPECT_FALSE(whole.passes()) << kept;
-      EXPECT_TRUE(says(whole.reason, {"to 1 m, which the file does not have"}));
+      EXPECT_TRUE(has_all(whole.reason, {"to 1 m, which the file does not have"}));
       const ShapeJudgement part =
-          judge(check, {.allowed_m = 0.0015, .least_seen_share = 0.2, .part = true});
+          judge(check, {.allowed_m = 0.0015, .least_observed_share = 0.2, .part = true});
       EXPECT_TRUE(part.passes()) << part.reason;
-      EXPECT_TRUE(says(part.reason, {"not judged: s = "}));
+      EXPECT_TRUE(has_all(part.reason, {"not judged: s = "}));
     }
   });
 }
 
 TEST_P(AnyRightShape, PartsThatThePointsDoNotDetermineAreNamed) {
-  Right right(random_);
+  RandomRod right(random_);
   right.scene = heavy_scene(10, 0);
   right.rod = solve_reference(right.scene, Model::energy);
   right.s = {0, 0.01, 0.02, 1};
   const ShapeCheck check = right.check(right.points(right.s), column_s());
-  EXPECT_LT(check.whole_max_m, 1e-7);
+  EXPECT_LT(check.whole_rod_max_m, 1e-7);
   const ShapeJudgement judgement = judge(check, {.allowed_m = 0.01});
   EXPECT_EQ(judgement.verdict, ShapeVerdict::undetermined);
-  EXPECT_TRUE(says(judgement.reason, {"do not determine the rod at s = 0.02 to 1 m",
-                                      "only 2 % of the rod is observed"}));
-  EXPECT_FALSE(judge(check, {.allowed_m = 0.01, .least_seen_share = 0.1, .part = true}).passes());
-  EXPECT_TRUE(judge(check, {.allowed_m = 0.01, .least_seen_share = 0.01, .part = true}).passes());
+  EXPECT_TRUE(has_all(judgement.reason, {"do not determine the rod at s = 0.02 to 1 m",
+                                         "only 2 % of the rod is observed"}));
+  EXPECT_FALSE(
+      judge(check, {.allowed_m = 0.01, .least_observed_share = 0.1, .part = true}).passes());
+  EXPECT_TRUE(
+      judge(check, {.allowed_m = 0.01, .least_observed_share = 0.01, .part = true}).passes());
 }
 
 TEST(ShapeMeasure, PointsPastTheTipCount) {
   std::mt19937 random(3);
   for (int draw = 0; draw < 4; ++draw) {
-    const Right right(random);
+    const RandomRod right(random);
     const energy_model::Samples tip = right.rod.sample(std::vector<double>{1});
     const Eigen::Vector3d t = tip.tangents.col(0);
     for (const Eigen::Vector3d& way :
@@ -226,13 +228,13 @@ TEST(ShapeMeasure, PointsPastTheTipCount) {
       points.conservativeResize(3, 22);
       points.col(21) = points.col(20) + 0.1 * way;
       const ShapeCheck check = right.check(points, false);
-      EXPECT_NEAR(check.excess_m, 0.1, bow);
+      EXPECT_NEAR(check.length_beyond_ends_m, 0.1, arc_chord_difference);
       EXPECT_NEAR(check.deviation.max_m, 0.1, 1e-6);
       EXPECT_NEAR(check.deviation.tip_m, 0.1, 1e-6);
       EXPECT_EQ(check.worst_point, 22);
       // If the excess length is spread evenly, the deviation at s is 0.1 s.
       EXPECT_GT(check.deviation.rms_m, 0.05);
-      EXPECT_TRUE(says(check.hint, {way == t ? "stretched by 10 %" : "do not continue"}));
+      EXPECT_TRUE(has_all(check.hint, {way == t ? "stretched by 10 %" : "do not continue"}));
     }
   }
 }
@@ -240,41 +242,42 @@ TEST(ShapeMeasure, PointsPastTheTipCount) {
 // A polyline several times as long as the rod is noise, not excess.
 TEST(ShapeMeasure, DenseNoiseIsNoExcess) {
   std::mt19937 random(5);
-  Right right(random);
+  RandomRod right(random);
   right.s = equal_arc_lengths(1, 1001);
   const ShapeCheck check =
       right.check(test::with_noise(right.points(right.s), 2e-3, random), false);
   EXPECT_GT(check.polyline_length_m, 3);
-  EXPECT_LT(check.excess_m, 0.015);
+  EXPECT_LT(check.length_beyond_ends_m, 0.015);
   EXPECT_LT(check.deviation.rms_m, 2e-3 * std::sqrt(3.0) * 1.5);
   EXPECT_TRUE(judge(check, {.allowed_m = 0.01}).passes())
       << judge(check, {.allowed_m = 0.01}).reason;
 }
 
 /// Returns a check without any deviation, of which only the observed fraction varies.
-ShapeCheck seen(double share) {
+ShapeCheck check_with_observed_share(double share) {
   ShapeCheck check;
   check.length_m = 1;
-  check.seen_share = share;
+  check.observed_share = share;
   check.reference.arc_length = {0, share};
   return check;
 }
 
 TEST(ShapeJudgement, LessThanHalfOfTheRodIsNeverAPass) {
-  EXPECT_TRUE(judge(seen(0.501), {.allowed_m = 0.01}).passes());
-  EXPECT_FALSE(judge(seen(0.499), {.allowed_m = 0.01}).passes());
-  EXPECT_TRUE(judge(seen(0.501), {.allowed_m = 0.01, .part = true}).passes());
-  const ShapeJudgement less = judge(seen(0.499), {.allowed_m = 0.01, .part = true});
+  EXPECT_TRUE(judge(check_with_observed_share(0.501), {.allowed_m = 0.01}).passes());
+  EXPECT_FALSE(judge(check_with_observed_share(0.499), {.allowed_m = 0.01}).passes());
+  EXPECT_TRUE(judge(check_with_observed_share(0.501), {.allowed_m = 0.01, .part = true}).passes());
+  const ShapeJudgement less =
+      judge(check_with_observed_share(0.499), {.allowed_m = 0.01, .part = true});
   EXPECT_EQ(less.verdict, ShapeVerdict::undetermined);
-  EXPECT_TRUE(says(less.reason, {"only 49.9 % of the rod is observed, 50 % is required"}));
+  EXPECT_TRUE(has_all(less.reason, {"only 49.9 % of the rod is observed, 50 % is required"}));
 }
 
 TEST(ShapeJudgement, HoldsWhatIsMissingAgainstTheWholeRodOnly) {
-  ShapeCheck check = seen(0.9);
+  ShapeCheck check = check_with_observed_share(0.9);
   check.deviation.rms_m = 0.001;
   check.deviation.max_m = 0.002;
-  check.whole_rms_m = 0.02;
-  check.whole_max_m = 0.1;
+  check.whole_rod_rms_m = 0.02;
+  check.whole_rod_max_m = 0.1;
   EXPECT_EQ(judge(check, {.allowed_m = 0.01}).judged_m, 0.02);
   EXPECT_EQ(judge(check, {.allowed_m = 0.01}).verdict, ShapeVerdict::fail);
   EXPECT_TRUE(judge(check, {.allowed_m = 0.03}).passes());

@@ -17,7 +17,7 @@
 
 namespace {
 
-using dlo::test::says_none;
+using dlo::test::has_none;
 
 using namespace dlo::compare;  // NOLINT(google-build-using-namespace)
 using dlo::test::Command;
@@ -54,7 +54,7 @@ TEST(VtkPolyline, IsReadBackExactly) {
 TEST(VtkPolyline, HasTheFrameOfACurvedRod) {
   Scene scene = loaded_arch();
   const Solution straight = solve(scene, Model::energy);
-  EXPECT_TRUE(says_none(vtk_of(straight), {"d1 "}));
+  EXPECT_TRUE(has_none(vtk_of(straight), {"d1 "}));
   scene.natural_strain = {0, 2, 0};
   scene.grippers[0].frame = FrameHold{.d1 = scene.grippers[0].direction->unitOrthogonal()};
   for (const Model model : {Model::energy, Model::exact}) {

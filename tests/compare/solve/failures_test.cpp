@@ -19,14 +19,14 @@ namespace {
 enum class Demand {
   end,       ///< an equilibrium, or one line of an error with status 2 or 3
   converge,  ///< an equilibrium
-  energy     ///< one of no more than `joules`
+  energy     ///< one of no more than `expected_energy`
 };
 
 struct FailureRun {
   std::string scene;
   std::string model;
   Demand demand = Demand::end;
-  double joules = 0;
+  double expected_energy = 0;
 };
 
 std::string test_name(const testing::TestParamInfo<FailureRun>& info) {
@@ -49,25 +49,25 @@ TEST_P(FormerFailure, EndsWithAnEquilibriumOrACleanError) {
                  : test::sanitized ? " --time-limit 300"
                                    : " --time-limit 20"));
   if (result.status == 0) {
-    if (!measures) EXPECT_TRUE(says(result.out, {"\nmodel ", " " + run.model + ", "}));
-    EXPECT_TRUE(says_none(result.out, {"nan"}));
+    if (!measures) EXPECT_TRUE(has_all(result.out, {"\nmodel ", " " + run.model + ", "}));
+    EXPECT_TRUE(has_none(result.out, {"nan"}));
   } else {
     // Not -1, a signal; not 4, a mistake of ours.
     EXPECT_TRUE(result.status == 2 || result.status == 3) << result.status << "\n" << result.err;
     EXPECT_EQ(std::count(result.err.begin(), result.err.end(), '\n'), 1) << result.err;
     // The only output of a failed run is a shape that states its error.
     if (!result.out.empty()) {
-      EXPECT_TRUE(says(result.out, {"not verified"}));
-      const bool says = result.out.find("the contacts did not converge") != std::string::npos ||
-                        result.out.find("the curvature is not resolved by") != std::string::npos;
-      EXPECT_TRUE(says) << result.out;
+      EXPECT_TRUE(has_all(result.out, {"not verified"}));
+      const bool has_all = result.out.find("the contacts did not converge") != std::string::npos ||
+                           result.out.find("the curvature is not resolved by") != std::string::npos;
+      EXPECT_TRUE(has_all) << result.out;
     }
   }
   if (quick) return;
   ASSERT_EQ(result.status, 0) << result.err;
   if (measures) {
     const auto energy = nlohmann::json::parse(result.out).at("energy_J").at("total").get<double>();
-    EXPECT_LE(energy, run.joules * (1 + 1e-6)) << result.out;
+    EXPECT_LE(energy, run.expected_energy * (1 + 1e-6)) << result.out;
   }
 }
 

@@ -69,7 +69,7 @@ Scene yielding_floor() {
 
 /// Replaces a shape that leaves the plane z = 0 of its scene by its mirror image, which has the
 /// same energy, if that is on the side of the given points.
-void take_image_beside(const Eigen::Matrix3Xd& points, Solution& solution) {
+void choose_nearer_mirror_image(const Eigen::Matrix3Xd& points, Solution& solution) {
   if (solution.shape.points.row(2).dot(points.row(2)) >= 0) return;
   solution.shape.points.row(2) *= -1;
   for (auto& gripper : solution.grippers) {
@@ -94,7 +94,7 @@ Errors chain_errors(Scene scene, const energy_model::Equilibrium& reference, int
   Solution chain = solve_chain(scene, scene.force_model);
   const std::vector<double> s = chain.shape.arc_length;
   const Eigen::Matrix3Xd expected_points = reference.sample(s).points;
-  if (scene.planar()) take_image_beside(expected_points, chain);
+  if (scene.planar()) choose_nearer_mirror_image(expected_points, chain);
   Errors errors;
   errors.segment = chain.parameters.segment_length;
   errors.shape = rms(s, chain.shape.points - expected_points);
@@ -126,16 +126,16 @@ TEST_P(SceneOfGrips, ChainConvergesToTheEnergyModelAtSecondOrder) {
   // vary with N.
   const Errors coarse = chain_errors(scene, reference, 24);
   const Errors fine = chain_errors(scene, reference, 96);
-  const auto order_of = [&](double Errors::*error) {
+  const auto convergence_order_of = [&](double Errors::*error) {
     return std::log(coarse.*error / fine.*error) / std::log(coarse.segment / fine.segment);
   };
-  EXPECT_NEAR(order_of(&Errors::shape), 2, 0.2);
+  EXPECT_NEAR(convergence_order_of(&Errors::shape), 2, 0.2);
   EXPECT_LT(fine.shape, 2e-4);
   EXPECT_LT(chain_errors(scene, reference, 64).shape, 5e-4);
   // The force of a single gripper equals the total load, for any shape.
-  if (scene.grippers.size() > 1) EXPECT_GT(order_of(&Errors::force), 1.7);
+  if (scene.grippers.size() > 1) EXPECT_GT(convergence_order_of(&Errors::force), 1.7);
   EXPECT_LT(fine.force, 2e-3);
-  if (coarse.torque > 0) EXPECT_GT(order_of(&Errors::torque), 1.7);
+  if (coarse.torque > 0) EXPECT_GT(convergence_order_of(&Errors::torque), 1.7);
   EXPECT_LT(fine.torque, 5e-3);
 }
 
@@ -170,13 +170,13 @@ TEST(Walls, RigidOnesAreEnteredByLessThanTheStretchOfTheRod) {
   scene.obstacles[0].stiffness = std::numeric_limits<double>::infinity();
   // The steps to rest grow as the square of the points.
   scene.force_model.points = test::sanitized ? 24 : 48;
-  const SolveOptions patient{.time_limit = 300};
-  const Solution chain = solve_chain(scene, scene.force_model, patient);
+  const SolveOptions long_limit{.time_limit = 300};
+  const Solution chain = solve_chain(scene, scene.force_model, long_limit);
   const double weight = scene.weight_per_length().norm() * scene.length;
   EXPECT_LT(-chain.shape.points.row(1).minCoeff(), weight / scene.axial_stiffness() * scene.length);
   ASSERT_EQ(chain.obstacles.size(), 1);
   EXPECT_GT(chain.obstacles[0].y(), 0.1 * weight);
-  const Solution force = solve_force(scene, scene.force_model, patient);
+  const Solution force = solve_force(scene, scene.force_model, long_limit);
   EXPECT_LT((chain.shape.points - force.shape.points).colwise().norm().maxCoeff(), 1e-6);
   EXPECT_NEAR(chain.obstacles[0].y(), force.obstacles[0].y(), 1e-3 * weight);
 }
@@ -233,11 +233,11 @@ force_model = { law = "hooke", bookkeeping = "consistent" }
   EXPECT_NEAR(energy.tension.back(), energy.contacts[0].force.dot(tip.normalized()),
               2e-2 * energy.contacts[0].force.norm());
   // The deviation of the force model decreases with the square of the segment length.
-  const SolveOptions patient{.time_limit = 300};  // sanitizer builds need this time
+  const SolveOptions long_limit{.time_limit = 300};  // sanitizer builds need this time
   scene.force_model.points = 12;
-  const double coarse = compare(scene, patient).deviation.rms_over_length;
+  const double coarse = compare(scene, long_limit).deviation.rms_over_length;
   scene.force_model.points = 24;
-  const Comparison fine = compare(scene, patient);
+  const Comparison fine = compare(scene, long_limit);
   EXPECT_LT(fine.deviation.rms_over_length, 4e-4);
   EXPECT_GT(coarse, 3.5 * fine.deviation.rms_over_length);
   EXPECT_NEAR(fine.effective_modulus.ratio, 1, 4e-2);
@@ -253,8 +253,8 @@ obstacle = [{ point = [0, "-0.25 mm", 0], normal = [0, 1, 0] }]
 )",
                                   "copper.toml");
   EXPECT_TRUE(
-      says(error_of<ConvergenceError>([&] { return solve_reference(scene, Model::energy); }),
-           {"contacts did not converge"}));
+      has_all(error_of<ConvergenceError>([&] { return solve_reference(scene, Model::energy); }),
+              {"contacts did not converge"}));
   EXPECT_THROW((void)solve(scene, Model::energy), ConvergenceError);
   EXPECT_THROW((void)compare(scene), ConvergenceError);
   SolveOptions options;
@@ -263,7 +263,7 @@ obstacle = [{ point = [0, "-0.25 mm", 0], normal = [0, 1, 0] }]
   EXPECT_EQ(shown.status, energy_model::SolveStatus::not_verified);
   EXPECT_NEAR(shown.penetration, -shown.shape.points.row(1).minCoeff(), 1e-5);
   const Comparison comparison = compare(scene, options);
-  EXPECT_TRUE(says(comparison.unverified, {"contacts did not converge"}));
+  EXPECT_TRUE(has_all(comparison.unverified, {"contacts did not converge"}));
   EXPECT_TRUE(std::isnan(comparison.effective_modulus.ratio));
 }
 
@@ -308,8 +308,8 @@ TEST(Chain, StretchAboveAHundredthIsNoResultUnlessAskedFor) {
   ASSERT_NEAR(scene.gamma(), 30, 1e-9);
   for (const auto solver : {&solve_chain, &solve_force}) {
     EXPECT_TRUE(
-        says(error_of<ConvergenceError>([&] { return solver(scene, scene.force_model, {}); }),
-             {"longer than at rest"}));
+        has_all(error_of<ConvergenceError>([&] { return solver(scene, scene.force_model, {}); }),
+                {"longer than at rest"}));
   }
   scene.force_model.c_c = scene.axial_stiffness();
   EXPECT_GT(solve_chain(scene, scene.force_model).energy.stretch, 0);
@@ -363,7 +363,7 @@ TEST(PolygonBalance, HoldsAndIsLostWithEveryForce) {
       EXPECT_GT(bad.share(), allowed);
       const std::string error = error_of<ConvergenceError>(
           [&] { return balanced(scene, rod, points, pulled, allowed, "chain"); });
-      EXPECT_TRUE(says(error, {"unbalanced force"})) << error;
+      EXPECT_TRUE(has_all(error, {"unbalanced force"})) << error;
       std::vector<GripperLoad> turned = solution.grippers;
       turned.back().torque.z() += 3 * allowed * good.largest_moment;
       EXPECT_GT(polygon_imbalance(rod, points, turned).share(), allowed);
@@ -377,7 +377,7 @@ TEST(PolygonBalance, HoldsAndIsLostWithEveryForce) {
 // A distance from rest of 1e-4 l does not determine the forces of a stiff polygon.
 TEST(PolygonBalance, OfTheForceModelIsStatedWhereItIsCoarse) {
   const Scene scene = spatial_clamps();
-  EXPECT_FALSE(says(solve(scene, Model::force).message, {"balanced within"}));
+  EXPECT_FALSE(has_all(solve(scene, Model::force).message, {"balanced within"}));
   const Solution coarse = solve(scene, Model::force, {.rest_tolerance = 1e-4});
   const std::string words = "balanced within ";
   const std::size_t at = coarse.message.find(words);

@@ -23,7 +23,7 @@ namespace {
 
 using energy_model::JointLaw;
 
-Scene rope_of_law(std::optional<JointLaw> law) {
+Scene hanging_rope_of_law(std::optional<JointLaw> law) {
   Scene scene = test::heavy_scene(60, 0);
   scene.force_model.points = 12;
   scene.force_model.joint_law = law;
@@ -31,7 +31,7 @@ Scene rope_of_law(std::optional<JointLaw> law) {
 }
 
 TEST(ModelChain, HasTheLawOfOtherPrograms) {
-  const Scene hooke = rope_of_law(std::nullopt);
+  const Scene hooke = hanging_rope_of_law(std::nullopt);
   const Discretisation polygon = discretise(hooke, hooke.force_model);
   const Eigen::VectorXd h = polygon.rod.rest_lengths;
   const Eigen::Index n = h.size();
@@ -43,7 +43,7 @@ TEST(ModelChain, HasTheLawOfOtherPrograms) {
     Eigen::Matrix3Xd points =
         test::chain_at_rest(h, springs, polygon.rod.loads.topRows<2>(), moment);
     points.row(0).array() -= h[0] / 2;
-    Solution chain = solve(rope_of_law(law), Model::chain);
+    Solution chain = solve(hanging_rope_of_law(law), Model::chain);
     const Shape own = polygon.shape(points);
     EXPECT_LT((chain.shape.points - own.points).cwiseAbs().maxCoeff(), 1e-9);
     return chain;
@@ -58,9 +58,9 @@ TEST(ModelChain, HasTheLawOfOtherPrograms) {
 }
 
 TEST(ModelChain, CountsTheEnergyOfItsLaw) {
-  const Scene scene = rope_of_law(JointLaw::linear);
+  const Scene scene = hanging_rope_of_law(JointLaw::linear);
   const Solution chain = solve(scene, Model::chain);
-  const Scene plain = rope_of_law(std::nullopt);
+  const Scene plain = hanging_rope_of_law(std::nullopt);
   const Discretisation polygon = discretise(plain, plain.force_model);
   const Shape& shape = chain.shape;
   const double h = polygon.parameters.segment_length;
@@ -75,7 +75,7 @@ TEST(ModelChain, CountsTheEnergyOfItsLaw) {
 }
 
 TEST(ModelChain, BetweenTwoClampsTooAndInItsEnergy) {
-  Scene scene = rope_of_law(JointLaw::linear);
+  Scene scene = hanging_rope_of_law(JointLaw::linear);
   Gripper far = scene.grippers.front();
   far.at = scene.length;
   far.position = {0.8, 0, 0};
@@ -100,14 +100,14 @@ TEST(ModelChain, LawIsAKeyOfTheSceneThatOtherModelsRefuse) {
   const Scene scene = parse_scene(text + "joint_law = \"binormal\"\n", "my.toml");
   EXPECT_EQ(scene.force_model.joint_law, JointLaw::binormal);
   const std::string of_force = error_of<InputError>([&] { (void)solve(scene, Model::force); });
-  EXPECT_TRUE(says(of_force, {"no other model than chain has it"}));
+  EXPECT_TRUE(has_all(of_force, {"no other model than chain has it"}));
   EXPECT_EQ(error_of<InputError>([&] { (void)compare(scene); }), of_force);
-  EXPECT_TRUE(says(error_of<InputError>([&] {
-                     (void)parse_scene(text + "law = \"paper\"\njoint_law = \"linear\"\n",
-                                       "my.toml");
-                   }),
-                   {"joint_law would have no effect"}));
-  EXPECT_TRUE(says(
+  EXPECT_TRUE(has_all(error_of<InputError>([&] {
+                        (void)parse_scene(text + "law = \"paper\"\njoint_law = \"linear\"\n",
+                                          "my.toml");
+                      }),
+                      {"joint_law would have no effect"}));
+  EXPECT_TRUE(has_all(
       error_of<InputError>([&] { (void)parse_scene(text + "joint_law = \"cubic\"\n", "my.toml"); }),
       {"linear"}));
 }

@@ -24,10 +24,10 @@ const std::string clamped_at_its_begin =
     test::level_clamp;
 
 void expect_load_refused(const std::string& loads, const std::vector<std::string>& parts) {
-  EXPECT_TRUE(says(test::scene_error(clamped_at_its_begin + loads), parts));
+  EXPECT_TRUE(has_all(test::scene_error(clamped_at_its_begin + loads), parts));
 }
 
-double apart(const Solution& a, const Solution& b) {
+double largest_difference(const Solution& a, const Solution& b) {
   return (a.shape.points - b.shape.points).cwiseAbs().maxCoeff();
 }
 
@@ -91,7 +91,7 @@ TEST(Loads, DistributedInsteadOfTheWeightBendAlikeInEveryModel) {
     SCOPED_TRACE(to_string(model));
     const Solution one = solve(heavy, model);
     const Solution other = solve(loaded, model);
-    EXPECT_LT(apart(one, other), model == Model::force ? 1e-7 : 1e-12);
+    EXPECT_LT(largest_difference(one, other), model == Model::force ? 1e-7 : 1e-12);
     EXPECT_NEAR(other.energy.gravity, 0, 1e-12);
     // The steps of the force model end at a small distance from rest.
     const double rest = model == Model::force ? 1e-6 : 1e-9;
@@ -111,7 +111,7 @@ TEST(Loads, ChainsOfAPartlyLoadedRodConvergeAtSecondOrder) {
     scene.force_model.points = points;
     const Solution chain = solve(scene, Model::chain);
     const Solution energy = solve(scene, Model::energy, {}, chain.shape.arc_length);
-    errors.push_back(apart(chain, energy));
+    errors.push_back(largest_difference(chain, energy));
   }
   EXPECT_NEAR(std::log(errors[0] / errors[2]) / std::log(16), 2, 0.2);
   EXPECT_LT(errors[2], 1e-5);
@@ -140,8 +140,8 @@ TEST(Loads, AMediumBearsWhatTheRodDisplaces) {
   const std::string round = "diameter = 0.01\n";
   const auto moved = [&](const std::string& section, double density, const std::string& medium,
                          double remaining) {
-    return apart(solve(scene_of(section, density, medium), Model::energy),
-                 solve(scene_of(section, remaining, ""), Model::energy));
+    return largest_difference(solve(scene_of(section, density, medium), Model::energy),
+                              solve(scene_of(section, remaining, ""), Model::energy));
   };
   EXPECT_LT(moved(round, 1400, water, 400), 1e-11);
   EXPECT_LT(moved(flat, 1300, oil, 500), 1e-9);
@@ -149,8 +149,8 @@ TEST(Loads, AMediumBearsWhatTheRodDisplaces) {
   EXPECT_LT(floats.shape.points.row(1).cwiseAbs().maxCoeff(), 1e-12);
   expect_load_refused("[medium]\ndensity = 1000\n", {"medium.density", "diameter"});
   const std::string stream = "velocity = [1, 0, 0]\nnormal_drag = 1.2\n";
-  EXPECT_TRUE(says(error_of<InputError>([&] { return scene_of(flat, 1300, water + stream); }),
-                   {"medium.velocity", "flat", "diameter"}));
+  EXPECT_TRUE(has_all(error_of<InputError>([&] { return scene_of(flat, 1300, water + stream); }),
+                      {"medium.velocity", "flat", "diameter"}));
 }
 
 const std::string thick_rod_held =
@@ -173,7 +173,7 @@ tangential_drag = 0.02
   EXPECT_EQ(scene.distributed_loads.size(), 1U);  // the buoyancy of the medium
   const auto refused = [](const std::string& medium, const std::vector<std::string>& parts) {
     EXPECT_TRUE(
-        says(test::scene_error(thick_rod_held + "[medium]\ndensity = 1000\n" + medium), parts));
+        has_all(test::scene_error(thick_rod_held + "[medium]\ndensity = 1000\n" + medium), parts));
   };
   refused("velocity = [1, 0, 0]\n", {"medium.normal_drag", "missing"});
   refused("normal_drag = 1\n", {"my.toml:9", "medium.velocity", "beside normal_drag"});
@@ -198,11 +198,11 @@ TEST(Loads, WhatHasNoPotentialIsForExactWhichSaysWhatItHasChecked) {
     const Scene scene = parse_scene(thick_rod_held + text, "my.toml");
     for (const Model model : {Model::energy, Model::chain, Model::force}) {
       if (model == Model::force && scene.drag) continue;
-      EXPECT_TRUE(
-          says(error_of<InputError>([&] { return solve(scene, model); }), {key, "--model exact"}));
+      EXPECT_TRUE(has_all(error_of<InputError>([&] { return solve(scene, model); }),
+                          {key, "--model exact"}));
     }
     const Solution exact = solve(scene, Model::exact);
-    EXPECT_TRUE(says(exact.message, {"stability is not judged", why}));
+    EXPECT_TRUE(has_all(exact.message, {"stability is not judged", why}));
     EXPECT_TRUE(std::isnan(exact.smallest_eigenvalue));
     // The tension is zero at a free tip; at the clamp it equals the gripper's force along the rod.
     EXPECT_NEAR(exact.tension.back(), 0, 1e-8);
@@ -216,9 +216,10 @@ TEST(Loads, PolygonsNameTheOneThatTheyDoNotTake) {
         thick_rod_held + "[[load]]\nat = 0.2\nforce = [0, 1, 0]\n[[load]]\nat = 0.7\n" + load,
         "my.toml");
     for (const Model model : {Model::chain, Model::force}) {
-      EXPECT_TRUE(says(error_of<InputError>([&] { return solve(scene, model); }),
-                       {"my.toml: load.", "the polygons of models force and chain do not take",
-                        load.starts_with("torque") ? "the couple at 0.7 m" : "the load at 0.7 m"}));
+      EXPECT_TRUE(
+          has_all(error_of<InputError>([&] { return solve(scene, model); }),
+                  {"my.toml: load.", "the polygons of models force and chain do not take",
+                   load.starts_with("torque") ? "the couple at 0.7 m" : "the load at 0.7 m"}));
     }
   }
 }
@@ -246,7 +247,7 @@ TEST(Loads, AndOtherKeysThatSayNothingCostNoEvaluation) {
       const Solution with = solve(arch(of_rod, loads), model);
       EXPECT_EQ(with.evaluations, plain.evaluations) << to_string(model) << of_rod << loads;
       EXPECT_EQ(with.terms, plain.terms) << to_string(model) << of_rod << loads;
-      EXPECT_LT(apart(with, plain), 1e-15) << to_string(model) << of_rod << loads;
+      EXPECT_LT(largest_difference(with, plain), 1e-15) << to_string(model) << of_rod << loads;
     }
   }
 }
@@ -262,8 +263,8 @@ TEST(Loads, DragOnSegmentsComesToTheExactShapeAtSecondOrder) {
     scene.force_model.points = points;
     const Solution force = solve(scene, Model::force, {.rest_tolerance = 1e-8});
     const Solution exact = solve(scene, Model::exact, {}, force.shape.arc_length);
-    errors.push_back(apart(force, exact));
-    EXPECT_TRUE(says(force.message, {"stability is not judged"}));
+    errors.push_back(largest_difference(force, exact));
+    EXPECT_TRUE(has_all(force.message, {"stability is not judged"}));
     EXPECT_EQ(force.status, energy_model::SolveStatus::not_verified);
     EXPECT_LT((force.grippers[0].force - exact.grippers[0].force).norm(), 5e-3);
   }
@@ -278,8 +279,8 @@ TEST(Loads, ACoupleInThePlaneIsForEnergyAndExact) {
   scene.loads = {{.at = 1, .torque = {0, 0, torque}}};
   EXPECT_TRUE(scene.planar());
   const Solution energy = solve(scene, Model::energy);
-  EXPECT_LT(apart(energy, solve(scene, Model::exact)), 1e-9);
-  EXPECT_TRUE(says(energy.message, {"in the plane alone"}));
+  EXPECT_LT(largest_difference(energy, solve(scene, Model::exact)), 1e-9);
+  EXPECT_TRUE(has_all(energy.message, {"in the plane alone"}));
 }
 
 }  // namespace

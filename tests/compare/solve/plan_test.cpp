@@ -26,7 +26,7 @@ struct PlannedScene {
   Scene scene;
 };
 
-Scene two_pins_apart(double gamma, double apart) {
+Scene rod_between_pins(double gamma, double apart) {
   Scene scene = heavy_scene(gamma, 0);
   scene.grippers = {{.at = 0.1, .position = {0, 0, 0}}, {.at = 0.9, .position = {apart, 0.1, 0}}};
   return scene;
@@ -49,7 +49,7 @@ std::vector<PlannedScene> planned_scenes() {
           {"arch", two_clamps(10, {0.8, 0, 0})},
           {"spatial", two_clamps(5, {0.6, 0.1, 0.2}, {0.5, 0.3, -0.6})},
           {"sideways", sideways_load()},
-          {"nearly_taut", two_pins_apart(20, 0.79)}};
+          {"nearly_taut", rod_between_pins(20, 0.79)}};
 }
 
 class PlanOf : public testing::TestWithParam<PlannedScene> {};
@@ -155,7 +155,7 @@ TEST(Plan, NoShapeReachesAnObstacleThatIsOutOfReach) {
                 -1e-9)
           << entry.name << " " << degrees;
       EXPECT_TRUE(make_plan(scene).obstacles.front().in_reach);
-      scene.obstacles.front().body = scene.obstacles.front().body.grown(-0.05);
+      scene.obstacles.front().body = scene.obstacles.front().body.enlarged(-0.05);
       EXPECT_FALSE(make_plan(scene).obstacles.front().in_reach);
     }
   }
@@ -180,10 +180,10 @@ TEST(Plan, TellsPlanarFromSpatialAndListsTheSpans) {
   scene.grippers.push_back({.at = 0.5, .position = {0.4, 0, 0}});
   const Plan plan = make_plan(scene);
   ASSERT_EQ(plan.spans.size(), 2U);
-  EXPECT_EQ(plan.spans[0].begin_held, "clamp");
+  EXPECT_EQ(plan.spans[0].begin_support, "clamp");
   EXPECT_EQ(plan.spans[0].inner_pins, 1);
   EXPECT_EQ(plan.spans[0].end, 0.8);
-  EXPECT_EQ(plan.spans[1].end_held, "free");
+  EXPECT_EQ(plan.spans[1].end_support, "free");
   scene.obstacles = {{obstacle::Body::half_space({0, -0.1, 0}, {0, 0.8, 0.6})}};
   EXPECT_FALSE(make_plan(scene).planar);
   scene.obstacles.front().body = obstacle::Body::half_space({0, -9, 0}, {0, 0.8, 0.6});
@@ -192,7 +192,7 @@ TEST(Plan, TellsPlanarFromSpatialAndListsTheSpans) {
 
 TEST(Plan, StretchIsNeededWhereARodIsTaut) {
   EXPECT_FALSE(make_plan(heavy_scene(1, 0)).stretch);
-  EXPECT_TRUE(make_plan(two_pins_apart(1e-3, 0.999999 * std::sqrt(0.64 - 0.01))).stretch);
+  EXPECT_TRUE(make_plan(rod_between_pins(1e-3, 0.999999 * std::sqrt(0.64 - 0.01))).stretch);
 }
 
 TEST(Plan, MotionCountsWhenItsKineticEnergyDoes) {

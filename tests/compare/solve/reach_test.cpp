@@ -14,7 +14,7 @@ namespace {
 using Eigen::Vector3d;
 
 /// A floor and a tilted wall that no point of a rod of length 1 gets to.
-Scene among_far_obstacles(Scene scene) {
+Scene with_obstacles_out_of_reach(Scene scene) {
   scene.obstacles.push_back({obstacle::Body::half_space({0, -100, 0}, Eigen::Vector3d::UnitY())});
   scene.obstacles.push_back({obstacle::Body::half_space({-50, 0, 0}, {3, 1, 2}), 1000});
   return scene;
@@ -31,7 +31,7 @@ Scene between_pins() {
 TEST(Reach, EveryModelLeavesFarObstaclesOut) {
   for (Scene scene : {heavy_scene(8, 0), between_pins()}) {
     scene.force_model.points = 12;
-    const Scene among = among_far_obstacles(scene);
+    const Scene among = with_obstacles_out_of_reach(scene);
     ASSERT_TRUE(obstacles_in_reach(among).empty());
     EXPECT_EQ(among.planar(), scene.planar());
     for (const Model model : {Model::energy, Model::exact, Model::chain, Model::force}) {
@@ -74,7 +74,7 @@ TEST(Reach, TheSettingsStretchCounts) {
 // The third obstacle is a floor so near that a softer rod would reach it by stretching.
 TEST(Reach, CheckAndCalibrateLeaveThemOutForEveryModulus) {
   const Scene scene = heavy_scene(8, 0);
-  Scene among = among_far_obstacles(scene);
+  Scene among = with_obstacles_out_of_reach(scene);
   among.obstacles.push_back(
       {obstacle::Body::half_space({0, -1.0001, 0}, Eigen::Vector3d::UnitY())});
   const Solution solution = solve(scene, Model::energy);

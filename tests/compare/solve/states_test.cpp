@@ -28,7 +28,7 @@ TEST(States, MirrorImagesBendAndTwistAboutTheirOwnAxes) {
   const Scene scene = ribbon();
   ASSERT_TRUE(scene.plane_normal());
   const std::vector<Equilibrium> states =
-      all_states(scene, solve_reference(scene, Model::energy), {});
+      all_equilibria(scene, solve_reference(scene, Model::energy), {});
   const std::vector<double> s = equal_arc_lengths(scene.length, 801);
   const double step = s[1] - s[0];
   const double bending_1 = *scene.given_bending_stiffness;

@@ -17,7 +17,7 @@ BenchmarkRun run_of(double seconds, double error) {
 TEST(Benchmark, FrontIsWhatNoOtherRunBeats) {
   std::vector<BenchmarkRun> runs = {run_of(1, 1e-2), run_of(2, 1e-3), run_of(3, 2e-3),
                                     run_of(4, 1e-5), run_of(4, 1e-4), run_of(1, 1e-2)};
-  mark_front(runs);
+  mark_pareto_front(runs);
   const std::vector<bool> expected = {true, true, false, true, false, true};
   for (std::size_t i = 0; i < runs.size(); ++i) EXPECT_EQ(runs[i].front, expected[i]) << i;
   EXPECT_EQ(fastest_within(runs, 5e-4), 3U);

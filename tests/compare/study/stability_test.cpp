@@ -60,13 +60,13 @@ TEST(HardCases, AreLeftOutByName) {
 }
 
 /// N = 1000 needs eight million steps, which belong into the command's own run.
-bool needs_millions_of_steps(const HardCase& hard) { return hard.start.cols() > 500; }
+bool exceeds_a_million_steps(const HardCase& hard) { return hard.start.cols() > 500; }
 
 std::vector<int> cases_within_a_million_steps() {
   std::vector<int> indices;
   const std::vector<HardCase> cases = hard_cases(1);
   for (std::size_t i = 0; i < cases.size(); ++i) {
-    if (!needs_millions_of_steps(cases[i])) indices.push_back(static_cast<int>(i));
+    if (!exceeds_a_million_steps(cases[i])) indices.push_back(static_cast<int>(i));
   }
   return indices;
 }
@@ -117,7 +117,7 @@ TEST(HardCases, AThousandPointsCreepOnAndAreNotSaidToRest) {
   StabilityOptions options;
   options.max_steps_auto = 10'000;
   const std::vector<HardCase> cases = hard_cases(1);
-  const auto found = std::find_if(cases.begin(), cases.end(), needs_millions_of_steps);
+  const auto found = std::find_if(cases.begin(), cases.end(), exceeds_a_million_steps);
   ASSERT_NE(found, cases.end());
   const StabilityResult result = run_hard_case(*found, Stepper::automatic, options);
   EXPECT_EQ(result.outcome, Outcome::wrong);

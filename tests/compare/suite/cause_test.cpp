@@ -30,7 +30,7 @@ Shape rod_shape(const Scene& scene, int points = 65) {
 }
 
 /// Returns the causes for shapes with 16, 32 and 64 segments of another scene.
-std::vector<Cause> causes_of_other(const Scene& scene, const Scene& other) {
+std::vector<Cause> causes_for_shapes_of(const Scene& scene, const Scene& other) {
   std::vector<CardShape> shapes;
   const auto reference = solve_reference(scene, answer_model(scene));
   for (const int points : {17, 33, 65}) {
@@ -77,7 +77,7 @@ TEST(Causes, AreNoneOfAnErrorThatIsAThousandthOfWhatIsRight) {
   const Scene scene = battery_scene("weight_10");
   Scene other = scene;
   other.scale_modulus(1 + 1e-5);
-  EXPECT_TRUE(causes_of_other(scene, other).empty());
+  EXPECT_TRUE(causes_for_shapes_of(scene, other).empty());
 }
 
 TEST(Causes, NameWhatASceneHasAndAShapeHasNot) {
@@ -85,7 +85,7 @@ TEST(Causes, NameWhatASceneHasAndAShapeHasNot) {
     const Scene scene = battery_scene(id);
     Scene other = scene;
     change(other);
-    const std::vector<Cause> causes = causes_of_other(scene, other);
+    const std::vector<Cause> causes = causes_for_shapes_of(scene, other);
     ASSERT_FALSE(causes.empty()) << id;
     EXPECT_EQ(causes[0].name, name) << id;
   };
@@ -138,7 +138,7 @@ TEST(CauseOfFactors, IsWhatTheyAreAtBothNumbersOfPoints) {
   EXPECT_EQ(caps.name, "weight with caps");
   EXPECT_NEAR(caps.factor, 1.4, 1e-12);
   // 4 r / (3 h) is 0.4 for h of 0.6 m / 64.
-  EXPECT_TRUE(says(caps.words, {"caps of radius 2.81 mm"}));
+  EXPECT_TRUE(has_all(caps.words, {"caps of radius 2.81 mm"}));
   EXPECT_NE(cause(battery_scene("payload_tip"), 1 / 1.1, 1 / 1.4).name, "weight with caps");
   EXPECT_EQ(cause(weight, 1.0 / 16, 1.0 / 64).name, "springs without 1/h");
   EXPECT_EQ(cause(weight, 16, 64).name, "springs with 1/h^2");
@@ -151,7 +151,7 @@ TEST(OwnPolygon, OfAStraightColumnFitsNoSprings) {
   const Scene column = battery_scene("buckling_below");
   Shape shape = rod_shape(column, 9);
   shape.points.row(0) *= 0.999;
-  EXPECT_NO_THROW((void)own_polygons(column, shape, Springs::fitted));
+  EXPECT_NO_THROW((void)candidate_chains(column, shape, Springs::fitted));
 }
 
 }  // namespace

@@ -34,7 +34,7 @@ std::string text_of(const std::filesystem::path& file) {
   return text.str();
 }
 
-json committed(const std::string& id) {
+json reference_answer(const std::string& id) {
   return json::parse(text_of(DLO_DATA "/suite/answers/" + id + ".json"));
 }
 
@@ -72,7 +72,7 @@ TEST(Pack, CommittedAnswersAreThoseOfFreshOnesWithinTheirBounds) {
                                          "floor",         "peg",           "stretch_pins"};
   for (const BatteryScene& scene : chosen_scenes(builtin_battery(), some)) {
     const Answer answer = dlo::compare::certified_answer(scene);
-    const json before = committed(scene.id);
+    const json before = reference_answer(scene.id);
     const json now = dlo::compare::answer_json(answer);
     EXPECT_EQ(before["methods"], now["methods"]) << scene.id;
     const double length = scene.scene.length;
@@ -128,7 +128,7 @@ TEST(Pack, CommittedOneHasEveryScene) {
   for (std::size_t i = 0; i < index["answers"].size(); ++i) {
     const BatteryScene& scene = builtin_battery().scenes[i];
     EXPECT_EQ(index["answers"][i]["id"], scene.id);
-    const json answer = committed(scene.id);
+    const json answer = reference_answer(scene.id);
     // The chains with which rods that stretch or move are compared have discretisation errors.
     const bool by_chain = scene.motion || scene.scene.stretch != dlo::compare::Stretch::none;
     EXPECT_LT(answer["points_bound_m"], (by_chain ? 2e-4 : 1e-6) * scene.scene.length);

@@ -27,7 +27,7 @@ using testing::HasSubstr;
 class SuiteCommand : public dlo::test::Command {
  protected:
   /// Returns the simulator of simulator.py with this defect.
-  static std::string wrong(const std::string& defect) {
+  static std::string simulator_with_defect(const std::string& defect) {
     return " --with " + defect + "='/usr/bin/python3 " + DLO_DATA +
            "/../tests/compare/suite/simulator.py " + defect + " {scene} {points} {shape}'";
   }
@@ -53,7 +53,7 @@ using Names = std::set<std::string>;
 
 TEST_F(SuiteCommand, FindsNoCauseInWhatIsRight) {
   for (const char* defect : {"right", "middle"}) {
-    const json card = card_of(wrong(defect) + few);
+    const json card = card_of(simulator_with_defect(defect) + few);
     EXPECT_EQ(causes(card), Names()) << card.dump(1);
     EXPECT_EQ(card.at("total").at("right"), 4) << defect;
     // The only unsupported scene has a floor, which this simulator does not model.
@@ -70,7 +70,7 @@ TEST_F(SuiteCommand, NamesWhatIsWrong) {
       {"soft", "bending stiffness wrong", 0},
       {"no_h", "springs without 1/h", 0}};
   for (const auto& [defect, name, right] : defects) {
-    const json card = card_of(wrong(defect) + " --scenes bending_large,weight_10");
+    const json card = card_of(simulator_with_defect(defect) + " --scenes bending_large,weight_10");
     EXPECT_EQ(causes(card), Names{name}) << card.dump(1);
     EXPECT_EQ(card.at("total").at("right"), right) << defect;
   }
@@ -102,20 +102,20 @@ TEST_F(SuiteCommand, HasOurPolygonsWithThePapersLawToo) {
 }
 
 TEST_F(SuiteCommand, NamesWhatIsNotAtRestThoughTipLoadsMakeItAStifferRod) {
-  const json card =
-      card_of(wrong("not_at_rest") + " --scenes bending_small,weight_1,weight_10,buckling_weight");
+  const json card = card_of(simulator_with_defect("not_at_rest") +
+                            " --scenes bending_small,weight_1,weight_10,buckling_weight");
   EXPECT_EQ(causes(card), Names{"not at rest"}) << card.dump(1);
   EXPECT_GE(card.at("total").at("causes").at("not at rest"), 2) << card.dump(1);
 }
 
 TEST_F(SuiteCommand, TellsTheFactorOfACause) {
-  const json soft = card_of(wrong("soft") + " --scenes weight_10");
+  const json soft = card_of(simulator_with_defect("soft") + " --scenes weight_10");
   EXPECT_NEAR(soft.at("scenes").at(0).at("causes").at(0).at("factor"), 0.7, 0.01);
-  const json light = card_of(wrong("light") + " --scenes payload_tip");
+  const json light = card_of(simulator_with_defect("light") + " --scenes payload_tip");
   const json& cause = light.at("scenes").at(0).at("causes").at(0);
   EXPECT_EQ(cause.at("name"), "weight wrong");
   EXPECT_NEAR(cause.at("factor"), 0.8, 0.01);
-  EXPECT_EQ(causes(card_of(wrong("weightless") + " --scenes weight_1,payload_tip")),
+  EXPECT_EQ(causes(card_of(simulator_with_defect("weightless") + " --scenes weight_1,payload_tip")),
             Names{"weight ignored"});
 }
 
@@ -250,9 +250,10 @@ TEST_F(SuiteCommand, HoldsErrorsAgainstABaselineOfRegress) {
 }
 
 TEST_F(SuiteCommand, WritesTheCardInEachForm) {
-  EXPECT_THAT(said("suite --with chain --scenes weight_1,strip_flat --markdown " + path("card.md") +
-                   " --junit " + path("card.xml") + " --report " + path("card.html")),
-              HasSubstr("chain: 1 of 2 scenes right, 1 not supported"));
+  EXPECT_THAT(
+      output_of("suite --with chain --scenes weight_1,strip_flat --markdown " + path("card.md") +
+                " --junit " + path("card.xml") + " --report " + path("card.html")),
+      HasSubstr("chain: 1 of 2 scenes right, 1 not supported"));
   EXPECT_THAT(read(path("card.md")), HasSubstr("| weight | 1 of 1 |"));
   const std::string xml = read(path("card.xml"));
   EXPECT_THAT(xml, HasSubstr("tests=\"2\" failures=\"0\" errors=\"0\" skipped=\"1\""));

@@ -23,7 +23,7 @@ using nlohmann::json;
 
 /// Interpolates between the chain's own points by Lagrange's polynomial through the six nearest,
 /// with an error far below that of the chain.
-Eigen::Matrix3Xd between(const Shape& chain, const std::vector<double>& at) {
+Eigen::Matrix3Xd interpolate(const Shape& chain, const std::vector<double>& at) {
   constexpr Eigen::Index nodes = 6;
   const auto count = static_cast<Eigen::Index>(chain.arc_length.size());
   Eigen::Matrix3Xd points = Eigen::Matrix3Xd::Zero(3, static_cast<Eigen::Index>(at.size()));
@@ -60,13 +60,13 @@ Shape without_clamps(Shape chain, double h) {
   return chain;
 }
 
-struct Third {
+struct Extrapolation {
   Eigen::Matrix3Xd points;
   double error = 0;  // largest change of a point by the last extrapolation [m]
 };
 
 /// Extrapolates three chains by Neville's scheme in h^2 to h = 0.
-Third third_method(Scene scene, const std::vector<double>& at) {
+Extrapolation extrapolate_chains(Scene scene, const std::vector<double>& at) {
   std::array<Eigen::Matrix3Xd, 3> shapes;
   std::array<double, 3> squares{};
   int points = 40;
@@ -77,14 +77,14 @@ Third third_method(Scene scene, const std::vector<double>& at) {
     scene.force_model.points = points;
     const Shape chain = solve_chain(scene, scene.force_model).shape;
     const double h = chain.arc_length[2] - chain.arc_length[1];
-    shapes[i] = between(without_clamps(chain, h), at);
+    shapes[i] = interpolate(without_clamps(chain, h), at);
     squares[i] = h * h;
   }
   const auto to_zero = [&](const Eigen::Matrix3Xd& a, double x, const Eigen::Matrix3Xd& b,
                            double y) { return Eigen::Matrix3Xd((x * b - y * a) / (x - y)); };
   const Eigen::Matrix3Xd first = to_zero(shapes[0], squares[0], shapes[1], squares[1]);
   const Eigen::Matrix3Xd second = to_zero(shapes[1], squares[1], shapes[2], squares[2]);
-  Third third{to_zero(first, squares[0], second, squares[2])};
+  Extrapolation third{to_zero(first, squares[0], second, squares[2])};
   third.error = (third.points - second).colwise().norm().maxCoeff();
   return third;
 }
@@ -103,7 +103,7 @@ TEST_P(ThirdMethod, IsWithinTheBoundOfTheAnswerAndItsOwnError) {
   std::ifstream stream(std::string(DLO_DATA "/suite/answers/") + GetParam().id + ".json");
   const json answer = json::parse(stream);
   const auto s = answer["arc_length_m"].get<std::vector<double>>();
-  const Third third = third_method(scene.scene, s);
+  const Extrapolation third = extrapolate_chains(scene.scene, s);
   double most = 0;
   for (std::size_t i = 0; i < s.size(); ++i) {
     const json& point = answer["points_m"][i];

@@ -20,7 +20,7 @@ TEST(ReadMarkers, TakesRowsAndColumnsInAnyOrder) {
 
 TEST(ReadMarkers, SaysWhatIsWrongAndWhere) {
   const auto expect_refused = [](const std::string& text, const std::string& why) {
-    EXPECT_TRUE(says(error_of<InputError>([&] { return parse_markers(text, "m.csv"); }), {why}));
+    EXPECT_TRUE(has_all(error_of<InputError>([&] { return parse_markers(text, "m.csv"); }), {why}));
   };
   expect_refused("time,x,y,z\n0,1,2,3\n", "m.csv:1: column s is missing");
   expect_refused("time,s,x,y,z\n", "m.csv: no rows");

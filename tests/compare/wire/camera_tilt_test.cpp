@@ -16,8 +16,8 @@ namespace {
 
 using namespace dlo::compare;
 using dlo::test::error_of;
-using dlo::test::said_scene;
-using dlo::test::says;
+using dlo::test::has_all;
+using dlo::test::nominal_scene;
 
 using dlo::test::one_degree;
 
@@ -31,13 +31,13 @@ struct Pictures {
 Pictures pictures(double EI, const Eigen::AngleAxisd& tilt, const Eigen::Vector3d& direction) {
   Pictures result;
   for (const double x : {0.3, 0.9}) {
-    Scene scene = said_scene(EI);
+    Scene scene = nominal_scene(EI);
     scene.grippers[0].direction = direction;
     scene.grippers[1].direction = direction;
     scene.grippers[0].position = {0.1, 0.2, 0};
     scene.grippers[1].position = {x, 0.3, 0};
     const Eigen::Matrix3Xd points =
-        dlo::test::seen_shape(scene, equal_arc_lengths(scene.length, 21)).points;
+        dlo::test::energy_model_shape(scene, equal_arc_lengths(scene.length, 21)).points;
     const Eigen::Vector3d about = scene.grippers[0].position;
     result.shapes.push_back(
         {"seen", (tilt.matrix() * (points.colwise() - about)).colwise() + about, {}});
@@ -86,7 +86,7 @@ TEST(CameraTilt, IsPutIntoScenesAsTheCameraSawThem) {
   for (std::size_t i = 0; i < seen.scenes.size(); ++i) {
     const Scene scene = calibrated_scene(seen.scenes[i], rod);
     const Eigen::Matrix3Xd points =
-        dlo::test::seen_shape(scene, equal_arc_lengths(scene.length, 21)).points;
+        dlo::test::energy_model_shape(scene, equal_arc_lengths(scene.length, 21)).points;
     EXPECT_LT((points - seen.shapes[i].points).cwiseAbs().maxCoeff(), 1e-7 * scene.length);
   }
 }
@@ -98,15 +98,16 @@ TEST(CameraTilt, IsRefusedWhereMoreThanWeightActs) {
     return error_of<InputError>(
         [&] { return fit_material(seen.scenes, seen.shapes, tilted(one_degree)); });
   };
-  EXPECT_TRUE(says(refusal(), {"wire: a camera's tilt of a rod without weight, or with loads",
-                               "(allowed: a rod that its weight alone bends)"}));
+  EXPECT_TRUE(has_all(refusal(), {"wire: a camera's tilt of a rod without weight, or with loads",
+                                  "(allowed: a rod that its weight alone bends)"}));
   const CalibratedRod rod = {.camera_tilt = {0, 0, 0.1}};
   EXPECT_TRUE(
-      says(error_of<InputError>([&] { return calibrated_scene(seen.scenes[1], rod); }),
-           {"wire: the calibrated rod was observed by a tilted camera", "no camera_tilt)"}));
+      has_all(error_of<InputError>([&] { return calibrated_scene(seen.scenes[1], rod); }),
+              {"wire: the calibrated rod was observed by a tilted camera", "no camera_tilt)"}));
   seen.scenes[1].loads.clear();
   seen.scenes[1].gravity = {1, -9.81, 0};
-  EXPECT_TRUE(says(refusal(), {"wire: its plane or gravity differs from", "under one gravity)"}));
+  EXPECT_TRUE(
+      has_all(refusal(), {"wire: its plane or gravity differs from", "under one gravity)"}));
 }
 
 /// The probability of a logarithm of E by one shape, summed over all directions of both clamps, by
@@ -142,9 +143,10 @@ TEST(WireFit, StiffnessIsLikeliestWhateverTheOtherNumbersAre) {
   constexpr int mountings = 4;
   constexpr double noise = 0.02;
   constexpr double tolerance = 10 * one_degree;
-  Scene scene = said_scene(1e-3);
+  Scene scene = nominal_scene(1e-3);
   scene.grippers[1].position = {0.9, 0, 0};
-  const MeasuredShape shape = dlo::test::seen_shape(scene, equal_arc_lengths(scene.length, 11));
+  const MeasuredShape shape =
+      dlo::test::energy_model_shape(scene, equal_arc_lengths(scene.length, 11));
   const MaterialFit fit = fit_material(
       std::vector<Scene>(mountings, scene), std::vector<MeasuredShape>(mountings, shape),
       {.direction_tolerance = tolerance, .choose_options = false, .noise = noise});
@@ -158,9 +160,9 @@ TEST(WireFit, StiffnessIsLikeliestWhateverTheOtherNumbersAre) {
   const double below = at(found - step);
   const double here = at(found);
   const double above = at(found + step);
-  const double likeliest = found + step / 2 * (below - above) / (below - 2 * here + above);
-  EXPECT_LT(likeliest, -0.08);
-  EXPECT_NEAR(found / likeliest, 1, 0.15);
+  const double maximum = found + step / 2 * (below - above) / (below - 2 * here + above);
+  EXPECT_LT(maximum, -0.08);
+  EXPECT_NEAR(found / maximum, 1, 0.15);
 }
 
 }  // namespace

@@ -19,7 +19,7 @@ using compare::MeasuredShape;
 using compare::Scene;
 
 inline constexpr double one_degree = std::numbers::pi / 180;
-inline constexpr double said_stiffness = 1e-3;         // EI of the scenes [N m^2]
+inline constexpr double nominal_stiffness = 1e-3;      // EI of the scenes [N m^2]
 inline constexpr double camera_tilt = 2 * one_degree;  // standard deviation, one of all mountings
 // Standard deviation of the clamp error shared by all mountings.
 inline constexpr double fixture_error = 20 * one_degree;
@@ -31,7 +31,7 @@ inline constexpr double point_error = 0.003;
 // Correlation length of the errors, divided by the rod length.
 inline constexpr double error_length = 0.2;
 
-inline Scene said_scene(double EI) {
+inline Scene nominal_scene(double EI) {
   Scene scene;
   scene.name = scene.file = "wire";
   scene.length = 1.5;
@@ -56,11 +56,11 @@ struct Wire {
 };
 
 /// @param points  of each shape
-inline Wire wire_of(unsigned seed, int count, int points = 50) {
+inline Wire random_wire(unsigned seed, int count, int points = 50) {
   std::mt19937 random(seed);
   std::normal_distribution<double> normal;
-  Wire wire{.EI = said_stiffness * std::exp(0.3 * normal(random))};
-  Scene truth = said_scene(wire.EI);
+  Wire wire{.EI = nominal_stiffness * std::exp(0.3 * normal(random))};
+  Scene truth = nominal_scene(wire.EI);
   truth.natural_strain.y() = curvature * normal(random);
   truth.natural_variation = {{0, curvature * normal(random)}, {0, curvature * normal(random)}};
   const double tilt = camera_tilt * normal(random);
@@ -80,7 +80,7 @@ inline Wire wire_of(unsigned seed, int count, int points = 50) {
     const double length = error_length * mounted.length;
     seen += correlated_noise(s, point_error, length, random);
     seen.row(2).setZero();
-    wire.scenes.push_back(said_scene(said_stiffness));
+    wire.scenes.push_back(nominal_scene(nominal_stiffness));
     wire.shapes.push_back({"seen", seen, {}});
   }
   return wire;

@@ -19,7 +19,7 @@ int main(int argc, char** argv) {
   }
   constexpr int pictures = 6;
   const dlo::test::Wire wire =
-      dlo::test::wire_of(static_cast<unsigned>(std::atoi(argv[3])), pictures);
+      dlo::test::random_wire(static_cast<unsigned>(std::atoi(argv[3])), pictures);
   for (std::size_t i = 0; i < wire.shapes.size(); ++i) {
     std::ofstream file(fmt::format("{}/mounting_{}.csv", argv[2], i + 1));
     file << "x,y,z\n";

@@ -25,8 +25,8 @@ using Eigen::Vector3d;
 
 constexpr double per_degree = std::numbers::pi / 180;
 
-MeasuredShape seen_points(const Scene& truth, int count, double noise, std::mt19937& random) {
-  MeasuredShape shape = test::seen_shape(truth, equal_arc_lengths(truth.length, count));
+MeasuredShape noisy_points(const Scene& truth, int count, double noise, std::mt19937& random) {
+  MeasuredShape shape = test::energy_model_shape(truth, equal_arc_lengths(truth.length, count));
   shape.points = test::with_noise(std::move(shape.points), noise, random);
   return shape;
 }
@@ -65,18 +65,18 @@ TEST(RollFit, TheRollOfATwistedWireIsFoundWithinFiveDegrees) {
         Vector3d(1, 0.5 * anywhere(random), 0.5 * anywhere(random)).normalized();
     const double made = 90 * per_degree * anywhere(random);
     const Scene truth = twisted_wire(last, direction, made);
-    const Scene said = twisted_wire(last, direction, made + 30 * per_degree * anywhere(random));
-    const MaterialFit found = fit_material({said}, {seen_points(truth, 31, 0.5e-3, random)},
+    const Scene nominal = twisted_wire(last, direction, made + 30 * per_degree * anywhere(random));
+    const MaterialFit found = fit_material({nominal}, {noisy_points(truth, 31, 0.5e-3, random)},
                                            {.roll_tolerance = 30 * per_degree});
     // The roll of the first clamp is not fitted: twist is counted from it.
     ASSERT_EQ(found.others.size(), 1U);
-    EXPECT_NEAR(said.grippers[1].frame->roll + fitted_roll(found, "roll of gripper 2", 0), made,
+    EXPECT_NEAR(nominal.grippers[1].frame->roll + fitted_roll(found, "roll of gripper 2", 0), made,
                 5 * per_degree);
   }
 }
 
 /// A wire that hangs from one clamp, pulled at its end.
-Scene hung_wire(const Vector3d& direction, const Vector3d& force) {
+Scene hanging_wire(const Vector3d& direction, const Vector3d& force) {
   return parse_scene(
       "[rod]\nlength = 1\nbending_stiffness = 0.05\ntorsional_stiffness = 0.04\n"
       "mass_per_length = 0.05\n[[gripper]]\nat = 0\nposition = [0, 0, 0]\ndirection = " +
@@ -99,16 +99,16 @@ Scene curved_wire(Scene truth, double roll) {
 TEST(RollFit, NaturalCurvatureInSpaceIsFoundWhereNobodySaidHowTheWireWasTurned) {
   std::mt19937 random(3);
   std::uniform_real_distribution<double> anywhere(-1, 1);
-  const std::vector<Scene> said = {
-      hung_wire(Vector3d(1, 0.2, 0.1).normalized(), {0, 0, 0}),
-      hung_wire(Vector3d(1, -0.4, 0.3).normalized(), {0, 0, 0}),
-      hung_wire(Vector3d(0.8, 0.5, -0.4).normalized(), {0.05, 0, 0.1})};
+  const std::vector<Scene> nominal = {
+      hanging_wire(Vector3d(1, 0.2, 0.1).normalized(), {0, 0, 0}),
+      hanging_wire(Vector3d(1, -0.4, 0.3).normalized(), {0, 0, 0}),
+      hanging_wire(Vector3d(0.8, 0.5, -0.4).normalized(), {0.05, 0, 0.1})};
   std::vector<Scene> scenes;
   std::vector<MeasuredShape> shapes;
   std::vector<double> rolls;
-  for (const Scene& scene : said) {
+  for (const Scene& scene : nominal) {
     rolls.push_back(180 * per_degree * anywhere(random));
-    shapes.push_back(seen_points(curved_wire(scene, rolls.back()), 41, 0.5e-3, random));
+    shapes.push_back(noisy_points(curved_wire(scene, rolls.back()), 41, 0.5e-3, random));
     scenes.push_back(scene);
     scenes.back().scale_modulus(1.3);
   }
@@ -132,9 +132,9 @@ TEST(RollFit, NaturalCurvatureInSpaceIsFoundWhereNobodySaidHowTheWireWasTurned) 
 
 TEST(RollFit, ARollThatIsInNoShapeIsRefused) {
   std::mt19937 random(1);
-  const Scene plain = hung_wire({1, 0, 0}, {0, 0, 0});
-  const MeasuredShape shape = seen_points(plain, 21, 1e-4, random);
-  EXPECT_TRUE(says(
+  const Scene plain = hanging_wire({1, 0, 0}, {0, 0, 0});
+  const MeasuredShape shape = noisy_points(plain, 21, 1e-4, random);
+  EXPECT_TRUE(has_all(
       error_of<InputError>([&] { return fit_material({plain}, {shape}, {.roll_tolerance = 0.1}); }),
       {"hung.toml: no shape of this scene depends on the clamps' rotation about the tangent"}));
 }

@@ -59,7 +59,7 @@ struct Choices<ArcLengths> {
 
 /// Returns the upward direction for PoseFreedom::upright.
 /// @throws InputError if the pose is `upright` and the scene has no gravity
-[[nodiscard]] Eigen::Vector3d up_of(const Scene& scene, PoseFreedom pose);
+[[nodiscard]] Eigen::Vector3d upward_direction(const Scene& scene, PoseFreedom pose);
 
 /// A rigid motion from a file's frame to the scene's: p -> rotation p + translation.
 struct RigidMotion {
@@ -96,10 +96,10 @@ struct Alignment {
   bool reversed = false;
   /// Rule that was used; `nearest` may become `chord` for a whole file whose frame is fitted.
   ArcLengths arc_lengths = ArcLengths::nearest;
-  Shape shape;             ///< points in the scene's frame, by increasing arc length
-  double rms_m = 0;        ///< RMS distance with the given weights
-  double other_rms_m = 0;  ///< RMS distance in the other direction of the file
-  double mean_square = 0;  ///< mean of all squared distances, unweighted [m^2]
+  Shape shape;                          ///< points in the scene's frame, by increasing arc length
+  double rms_m = 0;                     ///< RMS distance with the given weights
+  double opposite_direction_rms_m = 0;  ///< RMS distance in the other direction of the file
+  double mean_square = 0;               ///< mean of all squared distances, unweighted [m^2]
 };
 
 /// An interval of the rod between two adjacent points.
@@ -108,7 +108,7 @@ struct RodPart {
   double to_m = 0;    ///< end [m]
   /// Interpolation error: distance in the middle between the reference and a smooth curve through
   /// the reference at the points; smaller deviations cannot be detected there.
-  double untold_m = 0;
+  double interpolation_error_m = 0;
 };
 
 /// Aligns a shape with a reference curve of arc length 0 to `length`: finds the direction of the

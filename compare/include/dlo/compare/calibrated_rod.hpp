@@ -23,8 +23,8 @@ struct ClampCorrection {
 struct CalibratedRod {
   /// E [Pa], or EI [N m^2] with `by_stiffness`, as in Scene::stiffness.
   std::optional<double> stiffness;
-  /// Density [kg/m^3], or mass per length [kg/m] with `by_stiffness`, as in Scene::heaviness.
-  std::optional<double> heaviness;
+  /// Density [kg/m^3], or mass per length [kg/m] with `by_stiffness`, as in Scene::mass_parameter.
+  std::optional<double> mass_parameter;
   bool by_stiffness = false;  ///< whether the rod is given by EI and mass per length
   std::optional<double> torsional_stiffness;  ///< GJ [N m^2]
   /// Natural curvature: coefficients of P_0, P_1, .. about d1 and d2 [1/m]; empty: the scene's.

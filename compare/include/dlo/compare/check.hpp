@@ -33,7 +33,7 @@ struct CheckResult {
   ShapeJudgement judgement;               ///< verdict with its reason
   std::vector<Explanation> explanations;  ///< causes of a verdict `fail`, best first
   /// Cause that explains the shape better than any stiffness.
-  std::optional<Explanation> supersedes_modulus;
+  std::optional<Explanation> superseding_cause;
   PoseFreedom pose = PoseFreedom::known;  ///< unknown part of the shape's frame
   std::vector<std::string> notes;         ///< how the shape file was interpreted
   /// TrivialShape::deflection_m. It is computed if the tolerance is a share of the deflection, or
@@ -72,7 +72,7 @@ struct ToleranceShare {
 [[nodiscard]] inline ToleranceShare of_deflection(double share) { return {share, true}; }
 
 /// Outcome of a comparison in a test.
-struct ShapeNear {
+struct ShapeTestOutcome {
   bool near = false;  ///< whether check() passes
   /// Reason; then, on a separate line, the position of the largest deviation.
   std::string explanation;
@@ -84,11 +84,11 @@ struct ShapeNear {
 /// why.
 /// @param tolerance  share of the rod's length or of_deflection() [-], > 0
 /// @throws std::invalid_argument for a tolerance that is not > 0, InputError, ConvergenceError
-[[nodiscard]] ShapeNear shape_near(const Shape& shape, const Scene& scene,
-                                   ToleranceShare tolerance);
+[[nodiscard]] ShapeTestOutcome shape_near(const Shape& shape, const Scene& scene,
+                                          ToleranceShare tolerance);
 
 /// Checks a shape by its largest deviation of a point, else as shape_near().
-[[nodiscard]] ShapeNear shape_within(const Shape& shape, const Scene& scene,
-                                     ToleranceShare tolerance);
+[[nodiscard]] ShapeTestOutcome shape_within(const Shape& shape, const Scene& scene,
+                                            ToleranceShare tolerance);
 
 }  // namespace dlo::compare

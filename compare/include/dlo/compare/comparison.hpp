@@ -33,7 +33,7 @@ struct Comparison {
   /// The equilibrium that `reference` is. Of the stable ones it is the nearest (RMS) to the shape
   /// to which the Hookean polygon descends from the force model's shape. The force model is then on
   /// the same branch, which does not always have the lowest energy.
-  ComparedState state;
+  ComparedEquilibrium state;
   Deviation deviation;  ///< deviation of `force` from `reference`
   /// RMS deviation of the straight rod from the reference, divided by the length; NaN without a
   /// straight rod.
@@ -43,7 +43,7 @@ struct Comparison {
   EffectiveModulus effective_modulus;
   /// RMS deviation that remains at E*, divided by the RMS displacement of the reference from the
   /// straight rod; NaN without a straight rod.
-  double residual_over_movement = 0;
+  double residual_over_displacement = 0;
   Budget budget;                ///< causes of the deviation
   double energy_seconds = 0;    ///< time of the energy model's solver [s]
   long energy_evaluations = 0;  ///< evaluations of the energy model's solver

@@ -15,10 +15,11 @@ namespace dlo::compare {
 
 /// Significance of an effective modulus E*.
 enum class Optimum {
-  none,   ///< there is no E*, see EffectiveModulus::why_none
+  none,   ///< there is no E*, see EffectiveModulus::missing_reason
   clear,  ///< E* is identified, and it explains the deviation
-  /// E* is identified, but it explains less than `clear_share` of the mean square deviation, or
-  /// leaves more than the RMS displacement of the rod from straight (without_small_movement)
+  /// E* is identified, but it explains less than `clear_optimum_share` of the mean square
+  /// deviation, or leaves more than the RMS displacement of the rod from straight
+  /// (optimum_given_displacement)
   partial,
   /// A modulus twice or half as large fits less than 10 % worse, or worse by at most the energy
   /// model's own error (modulus_resolution).
@@ -54,8 +55,8 @@ struct EffectiveModulus {
   /// Share of the mean square distance at E that E* removes: 1 - (rms_m / rms at E)^2; NaN if the
   /// distance at E is at most the energy model's own error.
   double explained_share = std::numeric_limits<double>::quiet_NaN();
-  Optimum optimum = Optimum::none;   ///< significance of `ratio`
-  std::string why_none = "skipped";  ///< why there is no E*; empty if there is one
+  Optimum optimum = Optimum::none;         ///< significance of `ratio`
+  std::string missing_reason = "skipped";  ///< why there is no E*; empty if there is one
   /// Whether the followed equilibrium ends or bifurcates at E*: beyond it the rod is on another
   /// branch, so that E* is the limit of the branch and not a measure of the material.
   bool at_bifurcation = false;
@@ -66,7 +67,8 @@ struct EffectiveModulus {
 /// (NaN: there is no straight shape). An optimum that is `clear` but leaves more than that
 /// displacement becomes `partial`, since a straight rod would then be as near.
 /// fit_effective_modulus() has applied it.
-[[nodiscard]] Optimum without_small_movement(const EffectiveModulus& modulus, double movement_m);
+[[nodiscard]] Optimum optimum_given_displacement(const EffectiveModulus& modulus,
+                                                 double movement_m);
 
 /// Smallest E*/E that is searched.
 inline constexpr double smallest_modulus_ratio = 1e-4;
@@ -75,7 +77,7 @@ inline constexpr double largest_modulus_ratio = 1e4;
 /// Share of the mean square distance that a clear optimum explains: E* leaves at most half of the
 /// RMS distance, so that the explained part (sqrt(3)/2 of the RMS, as a field orthogonal to the
 /// rest) is at least 1.7 times the remainder.
-inline constexpr double clear_share = 0.75;
+inline constexpr double clear_optimum_share = 0.75;
 /// RMS distance below which no E* is identified, divided by the length: the energy model's own
 /// error.
 inline constexpr double modulus_resolution = 1e-8;

@@ -59,12 +59,12 @@ struct Explanation {
 /// not a measure of the material. Returns std::nullopt if there is no such cause, or if E* is not
 /// identified.
 /// @param explanations  result of explain_shape(), for the same check
-[[nodiscard]] std::optional<Explanation> better_than_stiffness(
+[[nodiscard]] std::optional<Explanation> cause_better_than_stiffness(
     const ShapeCheck& check, const std::vector<Explanation>& explanations);
 
 /// Largest deviation of a file from a chain of hinges at which the file counts as that chain,
 /// divided by the tolerance and in the measure of the tolerance (RMS or largest) [-].
-inline constexpr double right_chain = 0.25;
+inline constexpr double chain_match_tolerance = 0.25;
 
 /// Verdict on a file that may be a chain of hinges.
 struct ChainJudgement {
@@ -74,11 +74,11 @@ struct ChainJudgement {
 };
 
 /// Judges as judge(), but also passes a file that is a chain of hinges at rest. All of these are
-/// required: the file's polyline is as long as the rod within the tolerance; `least_seen_share` of
-/// the rod is observed; the file is within `right_chain` of the tolerance from a chain at rest with
-/// the same number of points; check.rod is a stable, certified equilibrium; and the chain's
-/// distance from it is an error of discretisation, which decreases with shorter segments at the
-/// rate that the chain's clamps imply, or is within the bound of make_plan(). If the distance
+/// required: the file's polyline is as long as the rod within the tolerance; `least_observed_share`
+/// of the rod is observed; the file is within `chain_match_tolerance` of the tolerance from a chain
+/// at rest with the same number of points; check.rod is a stable, certified equilibrium; and the
+/// chain's distance from it is an error of discretisation, which decreases with shorter segments at
+/// the rate that the chain's clamps imply, or is within the bound of make_plan(). If the distance
 /// decreases at another rate, the chain is too coarse to judge, and the verdict is `undetermined`.
 [[nodiscard]] ChainJudgement judge_as_chain(const Scene& scene, const ShapeCheck& check,
                                             const ShapeTolerance& tolerance);

@@ -81,14 +81,15 @@ struct MaterialFitOptions {
   /// Largest modulus that is searched, divided by that of the scene [-].
   double largest_ratio = 1e4;
   /// A number counts as identified only if the ratio of its interval's ends is at most this factor.
-  double identified_within = 4;
+  double largest_interval_ratio = 4;
   SolveOptions solve;  ///< limits of the solvers
 };
 
 /// A fitted quantity and its 95 % interval; an empty end of the interval is open as far as was
 /// searched.
 struct FittedValue {
-  /// Given only if the interval is closed and no wider than MaterialFitOptions::identified_within.
+  /// Given only if the interval is closed and no wider than
+  /// MaterialFitOptions::largest_interval_ratio.
   std::optional<double> value;
   std::optional<double> estimate;  ///< best value, identified or not; empty: not searched
   std::optional<double> low;       ///< lower end of the interval
@@ -97,18 +98,18 @@ struct FittedValue {
 
 /// A number that was fitted in addition to E and the density.
 struct FittedNumber {
-  std::string name;         ///< "natural curvature about d2, P_1", "direction of gripper 2"
-  std::string unit;         ///< SI: "1/m", "rad" or "m"
-  double value = 0;         ///< correction of the scene's value; the most likely one
-  double deviation = 0;     ///< standard deviation, prior knowledge included
-  double known_before = 0;  ///< prior standard deviation, without the shapes
+  std::string name;            ///< "natural curvature about d2, P_1", "direction of gripper 2"
+  std::string unit;            ///< SI: "1/m", "rad" or "m"
+  double value = 0;            ///< correction of the scene's value; the most likely one
+  double deviation = 0;        ///< standard deviation, prior knowledge included
+  double prior_deviation = 0;  ///< prior standard deviation, without the shapes
   /// Index of the shape that it belongs to; empty: it belongs to the wire.
   std::optional<std::size_t> shape;
 
   /// Whether the shapes, rather than the prior, determine the number: the variance is at most half
   /// of the prior variance.
-  [[nodiscard]] bool is_seen() const {
-    return 2 * deviation * deviation <= known_before * known_before;
+  [[nodiscard]] bool is_determined_by_shapes() const {
+    return 2 * deviation * deviation <= prior_deviation * prior_deviation;
   }
 };
 
@@ -146,7 +147,7 @@ struct ChainJoint {
 
 /// Springs with which a chain of hinges comes nearest to the fitted rod in a scene. Between unequal
 /// segments each joint has its own stiffness, EI divided by the mean length of both segments, times
-/// `over_rod`.
+/// `stiffness_ratio`.
 struct ChainSprings {
   std::string scene;                     ///< name of the scene
   ChainClamp clamp = ChainClamp::hinge;  ///< how clamps hold the chain
@@ -155,8 +156,8 @@ struct ChainSprings {
   double segment_length = 0;  ///< h [m]; the mean if segments are unequal
   /// Moment of a joint between segments of that length, divided by its angle [N m/rad].
   double stiffness = 0;
-  double over_rod = 1;  ///< `stiffness` divided by EI / h [-]
-  double rms_m = 0;     ///< RMS distance of the chain's points from the rod
+  double stiffness_ratio = 1;  ///< `stiffness` divided by EI / h [-]
+  double rms_m = 0;            ///< RMS distance of the chain's points from the rod
   /// Stiffness k of a joint between segments of that length with the energy of discrete elastic
   /// rods, k (2 tan(angle/2))^2 / 2 [N m/rad].
   double binormal_stiffness = 0;
@@ -175,7 +176,7 @@ struct Prediction {
   std::optional<double> repeatability_m;
 
   /// Prediction error divided by the repeatability [-]; empty if the latter is unknown or 0.
-  [[nodiscard]] std::optional<double> over_repeatability() const {
+  [[nodiscard]] std::optional<double> repeatability_ratio() const {
     if (!repeatability_m || !(*repeatability_m > 0)) return std::nullopt;
     return rms_m / *repeatability_m;
   }
@@ -184,7 +185,7 @@ struct Prediction {
 /// Ratio of prediction error to repeatability from which the output states that the fit predicts
 /// worse than the shapes repeat. The ratio of two such estimates from five shapes scatters by a
 /// tenth.
-inline constexpr double worse_than_repeatability = 1.2;
+inline constexpr double reported_repeatability_ratio = 1.2;
 
 /// Alignment of one shape with the fitted rod.
 struct FittedShape {
@@ -217,8 +218,8 @@ struct CorrelatedErrors {
 struct MaterialFit {
   /// E [Pa], or EI [N m^2] of a rod that is given by EI (Scene::stiffness of the first scene).
   FittedValue youngs_modulus;
-  /// Density [kg/m^3], or mass per length [kg/m] of a rod that is given by it (Scene::heaviness);
-  /// empty if it was not requested or could not be fitted.
+  /// Density [kg/m^3], or mass per length [kg/m] of a rod that is given by it
+  /// (Scene::mass_parameter); empty if it was not requested or could not be fitted.
   std::optional<FittedValue> density;
   /// GJ of the first scene [N m^2], if it was requested.
   std::optional<FittedValue> torsional_stiffness;

@@ -19,7 +19,7 @@ enum class StiffnessRule {
   formula_21,      ///< law paper: each scene's own c_b by Formula 21
   moment_matched,  ///< law paper: each scene's own c_b, the physical moment at the design curvature
   fitted,          ///< law paper: the one c_b that minimises the RMS deviation over all scenes
-  fitted_alone,    ///< law paper: the c_b of least deviation of each scene; no c_b does better
+  fitted_per_scene,  ///< law paper: the c_b of least deviation of each scene; no c_b does better
 };
 
 /// Names of the rules in tables.
@@ -31,7 +31,7 @@ struct Choices<StiffnessRule> {
       {StiffnessRule::formula_21, "formula_21", ""},
       {StiffnessRule::moment_matched, "moment_matched", ""},
       {StiffnessRule::fitted, "fitted", ""},
-      {StiffnessRule::fitted_alone, "fitted_alone", ""}};
+      {StiffnessRule::fitted_per_scene, "fitted_alone", ""}};
 };
 
 /// Options of the fit.
@@ -89,7 +89,7 @@ struct ForceModelFit {
   /// Whether no scene's stepped deviation is above the target.
   [[nodiscard]] bool reached() const;
   /// Returns sentences that explain why the target is not reached; empty if it is.
-  [[nodiscard]] std::vector<std::string> why_missed() const;
+  [[nodiscard]] std::vector<std::string> shortfall_reasons() const;
 };
 
 /// Derives the force model's parameters from physics.

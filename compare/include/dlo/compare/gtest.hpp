@@ -37,7 +37,8 @@
 namespace dlo::compare {
 
 /// Comparison that a matcher makes: shape_near or shape_within.
-using ShapeTest = ShapeNear (*)(const Shape& shape, const Scene& scene, ToleranceShare tolerance);
+using ShapeTest = ShapeTestOutcome (*)(const Shape& shape, const Scene& scene,
+                                       ToleranceShare tolerance);
 
 /// Predicate of EXPECT_SHAPE_NEAR and EXPECT_SHAPE_WITHIN.
 struct ShapeAssertion {
@@ -47,7 +48,7 @@ struct ShapeAssertion {
   testing::AssertionResult operator()(const char* shape_text, const char* scene_text,
                                       const char* tolerance_text, const Shape& shape,
                                       const Scene& scene, ToleranceShare tolerance) const {
-    const ShapeNear result = test(shape, scene, tolerance);
+    const ShapeTestOutcome result = test(shape, scene, tolerance);
     if (result.near) return testing::AssertionSuccess();
     return testing::AssertionFailure()
            << shape_text << " is not the shape of " << scene_text << " (" << scene.name
@@ -67,7 +68,7 @@ class ShapeMatcher {
 
   /// Whether the shape is the scene's; streams the reason.
   bool MatchAndExplain(const Shape& shape, std::ostream* explanation) const {
-    const ShapeNear result = test_(shape, scene_, tolerance_);
+    const ShapeTestOutcome result = test_(shape, scene_, tolerance_);
     if (explanation != nullptr) *explanation << result.explanation;
     return result.near;
   }

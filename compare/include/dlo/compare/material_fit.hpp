@@ -25,8 +25,8 @@ namespace dlo::compare {
 /// be open at one end. It includes every other local minimum in the joint confidence region of all
 /// fitted numbers, frames included, at the level 1 - 1e-3 (F distribution; with a given noise: chi-
 /// squared), since a part of a soft rod in an unknown frame also looks like another part of a
-/// stiffer one. If the interval is open or wider than `identified_within`, E is not identifiable
-/// from the shapes and no value is given.
+/// stiffer one. If the interval is open or wider than `largest_interval_ratio`, E is not
+/// identifiable from the shapes and no value is given.
 ///
 /// If the residuals show that errors along the rod are correlated (likelihood ratio against white
 /// noise plus a first-order autoregression in arc length, restricted maximum likelihood), the
@@ -78,7 +78,7 @@ struct Calibration {
   std::vector<Scene> scenes;       ///< the scene of each shape
   std::vector<std::string> files;  ///< names of the shapes
   /// Whether the unknown part of the shapes' frames was fitted as well.
-  bool frame_was_found = false;
+  bool frame_was_fitted = false;
   MaterialFit fit;                     ///< result of the fit, with its alternatives
   std::vector<HeldOutShape> held_out;  ///< hold-out shapes in the order given
 };

@@ -20,11 +20,11 @@ struct PlanOptions {
 
 /// An interval of the rod that can be solved separately: between clamps, or a clamp and an end.
 struct PlannedSpan {
-  double begin = 0;        ///< arc length [m]
-  double end = 0;          ///< arc length [m]
-  int inner_pins = 0;      ///< number of pins strictly inside
-  std::string begin_held;  ///< support at `begin`: "clamp", "pin" or "free"
-  std::string end_held;    ///< support at `end`: "clamp", "pin" or "free"
+  double begin = 0;           ///< arc length [m]
+  double end = 0;             ///< arc length [m]
+  int inner_pins = 0;         ///< number of pins strictly inside
+  std::string begin_support;  ///< support at `begin`: "clamp", "pin" or "free"
+  std::string end_support;    ///< support at `end`: "clamp", "pin" or "free"
 };
 
 /// Reach of the rod towards an obstacle.

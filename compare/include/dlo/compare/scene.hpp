@@ -239,7 +239,7 @@ struct Scene {
   /// Returns the stiffness that a fit multiplies: E or EI.
   [[nodiscard]] NamedValue stiffness() const;
   /// Returns the mass parameter that a fit multiplies: density or mass per length.
-  [[nodiscard]] NamedValue heaviness() const;
+  [[nodiscard]] NamedValue mass_parameter() const;
   [[nodiscard]] double mass() const;  ///< total mass of the rod [kg], with sections
   /// Returns the mean weight per length [N/m]: mass() times gravity, divided by the length.
   [[nodiscard]] Eigen::Vector3d weight_per_length() const;
@@ -250,7 +250,7 @@ struct Scene {
   [[nodiscard]] Eigen::Vector3d distributed_between(double begin, double end) const;
   /// Returns the sum of the absolute values of all loads [N], without weight; couples are divided
   /// by the length.
-  [[nodiscard]] double total_of_loads() const;
+  [[nodiscard]] double total_load_magnitude() const;
   /// Whether a load has a couple.
   [[nodiscard]] bool has_couples() const;
   /// Checks that all loads have a potential (energy_model::has_potential).
@@ -302,7 +302,7 @@ struct Scene {
   [[nodiscard]] Eigen::Vector3d natural_curvature(double begin, double end) const;
   /// Whether two clamps or more hold the rod's frame, which twists the rod or prevents twist. The
   /// first clamp of a rod with material directors always holds it.
-  [[nodiscard]] bool holds_twist() const;
+  [[nodiscard]] bool prescribes_twist() const;
   /// Returns the scene with clamps that let the rod rotate about their directions, except for the
   /// first clamp of a rod with material directors.
   [[nodiscard]] Scene without_twist() const;
@@ -347,7 +347,7 @@ struct TimeSpan {
 };
 
 /// Returns the time span of a moving scene; empty if nothing moves.
-[[nodiscard]] std::optional<TimeSpan> motion_of(const Scene& scene);
+[[nodiscard]] std::optional<TimeSpan> motion_time_span(const Scene& scene);
 
 /// Returns the static scene at a time: grippers and obstacles are at their poses and have no
 /// trajectories.

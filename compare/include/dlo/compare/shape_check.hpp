@@ -26,8 +26,8 @@ struct ShapeCheckOptions {
 /// An equilibrium to which a search from a file's points converged, but whose stability or contacts
 /// could not be verified.
 struct UnverifiedState {
-  double rms_m = 0;     ///< RMS deviation of the file from it, as ShapeCheck::whole_rms_m
-  double max_m = 0;     ///< largest deviation, as ShapeCheck::whole_max_m
+  double rms_m = 0;     ///< RMS deviation of the file from it, as ShapeCheck::whole_rod_rms_m
+  double max_m = 0;     ///< largest deviation, as ShapeCheck::whole_rod_max_m
   std::string message;  ///< message of the solver
 };
 
@@ -40,7 +40,7 @@ struct ShapeCheck {
   /// Length of the reference; differs from l only if the rod stretches.
   double stretched_length_m = 0;
   Alignment alignment;            ///< the shape as aligned with the reference
-  ComparedState state;            ///< the stable equilibrium nearest to the shape
+  ComparedEquilibrium state;      ///< the stable equilibrium nearest to the shape
   Shape reference;                ///< the energy model at the alignment's arc lengths
   energy_model::Equilibrium rod;  ///< the whole compared equilibrium
   std::vector<energy_model::Equilibrium> other_rods;  ///< the other stable equilibria
@@ -52,11 +52,11 @@ struct ShapeCheck {
   /// from the nearest points in order; if points extend past an end, the file is longer than the
   /// rod, and the excess is distributed along it. Angle and curvature are then NaN.
   Deviation deviation;
-  double excess_m = 0;  ///< `nearest`: length of the file beyond the rod's ends [m]
+  double length_beyond_ends_m = 0;  ///< `nearest`: length of the file beyond the rod's ends [m]
   /// RMS deviation of the file as the whole rod: a missing end counts with its distance from the
   /// outermost point.
-  double whole_rms_m = 0;
-  double whole_max_m = 0;        ///< largest deviation of the file as the whole rod
+  double whole_rod_rms_m = 0;
+  double whole_rod_max_m = 0;    ///< largest deviation of the file as the whole rod
   std::vector<RodPart> between;  ///< intervals longer than 1e-3 l between adjacent points
   std::string hint;              ///< probable error of the file, as a clause; may be empty
   long worst_point = 0;          ///< point of the largest deviation, counted from 1 as in the file
@@ -65,15 +65,15 @@ struct ShapeCheck {
   /// RMS displacement of the reference from straight, over the same interval; or NaN.
   double movement_m = 0;
   double polyline_length_m = 0;  ///< length of the polyline through the points
-  double seen_share = 0;         ///< arc length from the first point to the last, divided by l [-]
+  double observed_share = 0;     ///< arc length from the first point to the last, divided by l [-]
   double largest_gap_m = 0;      ///< largest arc length between adjacent points
   double largest_gap_at_m = 0;   ///< arc length at which the largest gap begins
   /// Number of the file's points that are not where a gripper holds the rod.
   long measured_points = 0;
-  bool direction_is_clear = false;  ///< whether the other direction fits at least 5 % worse
+  bool is_direction_determined = false;  ///< whether the other direction fits at least 5 % worse
   /// PoseFreedom::rigid: whether the points determine the rotation about the line that fits them
   /// best; false if they lie nearly on it. True for other poses.
-  bool turn_is_clear = true;
+  bool is_rotation_determined = true;
   /// E*/E; for each modulus the shape is aligned again, and the equilibrium followed.
   EffectiveModulus effective_modulus;
   NamedValue stiffness;  ///< Scene::stiffness

@@ -12,9 +12,9 @@ namespace dlo::compare {
 
 /// Tolerance of a comparison.
 struct ShapeTolerance {
-  double allowed_m = 0;           ///< largest deviation that passes [m], > 0
-  bool largest = false;           ///< whether the largest deviation is judged, not the RMS
-  double least_seen_share = 0.5;  ///< share of the rod that the points have to show [-], 0 to 1
+  double allowed_m = 0;               ///< largest deviation that passes [m], > 0
+  bool largest = false;               ///< whether the largest deviation is judged, not the RMS
+  double least_observed_share = 0.5;  ///< share of the rod that the points have to show [-], 0 to 1
   /// Whether the file is declared to be a part of the rod, and only that part is judged. Else it is
   /// the whole rod, and missing parts count.
   bool part = false;
@@ -65,8 +65,8 @@ struct ShapeJudgement {
 /// declared to be a part. A part between adjacent points is observed if a smooth curve through the
 /// points determines it within the tolerance; the whole rod has to be observed. A few points on a
 /// short part of the rod lie near it whatever its shape is, so a file that shows less than
-/// `least_seen_share` never passes. A shape within the tolerance that does not show enough of the
-/// rod is `undetermined`, and so is a shape beyond it that is within the tolerance of
+/// `least_observed_share` never passes. A shape within the tolerance that does not show enough of
+/// the rod is `undetermined`, and so is a shape beyond it that is within the tolerance of
 /// ShapeCheck::unverified. If a file has one measured point (ShapeCheck::measured_points), the
 /// largest distance of a point is judged, not the RMS. The reason names what the file lacks.
 [[nodiscard]] ShapeJudgement judge(const ShapeCheck& check, const ShapeTolerance& tolerance);

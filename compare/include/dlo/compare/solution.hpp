@@ -76,7 +76,7 @@ struct GripperLoad {
 struct StretchEffect {
   double strain = std::numeric_limits<double>::quiet_NaN();  ///< largest |N| / EA [-]
   /// RMS displacement of the points [m].
-  double moved_m = std::numeric_limits<double>::quiet_NaN();
+  double displacement_m = std::numeric_limits<double>::quiet_NaN();
   /// Relative change of the largest tension [-].
   double tension = std::numeric_limits<double>::quiet_NaN();
 };
@@ -154,7 +154,7 @@ struct Solution {
   double smallest_eigenvalue = std::numeric_limits<double>::quiet_NaN();
   /// Equilibrium::stable_energies of the energy model [J], from solve() and solve_all().
   std::vector<double> stable_energies;
-  int passing_starts = 0;  ///< Equilibrium::passing_starts of the energy model
+  int other_side_starts = 0;  ///< Equilibrium::other_side_starts of the energy model
   /// Number of directions in which a `near_singular` equilibrium of the energy model is singular,
   /// at a fold or bifurcation.
   int neutral_directions = 0;

@@ -23,7 +23,7 @@ enum class JointLaw {
 struct ChainProblem {
   Eigen::VectorXd segment_lengths;  ///< lengths of the n segments [m], n >= 2, each > 0
   Eigen::Vector2d start = Eigen::Vector2d::Zero();  ///< first point [m]
-  double held_angle = 0;                            ///< angle of the first segment from +x [rad]
+  double first_angle = 0;                           ///< angle of the first segment from +x [rad]
   Eigen::Matrix2Xd node_forces;                     ///< dead force on each point [N], 2 x (n+1)
   JointLaw law = JointLaw::hooke;                   ///< law of every joint
   double stiffness = 0;  ///< bending stiffness: c_b [N] for law paper, else EI [N m^2]; > 0
@@ -64,7 +64,7 @@ struct [[nodiscard]] ChainResult {
   double residual = -1;
   /// Torque about `start` that the clamp of the first segment exerts, computed from the moment of
   /// the first joint and the force beyond it [N m].
-  double held_torque = 0;
+  double clamp_torque = 0;
   Eigen::VectorXd angles;   ///< angles of the segments from +x [rad], n values
   Eigen::Matrix2Xd points;  ///< [m], 2 x (n+1)
   /// Energy of all joints [J]; zero if every joint has its stress-free angle.

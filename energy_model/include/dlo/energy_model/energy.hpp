@@ -58,8 +58,8 @@ Equilibrium solve_energy(const Problem& problem, const EnergyOptions& options = 
 /// tried, so the result need not be the lowest equilibrium; its status states whether it is an
 /// equilibrium and whether it is stable. Only the directions from point to point are used: the
 /// grips determine the position of the rod. Each span between clamps starts from its own points. A
-/// taut rod, or one with negligible bending stiffness (line_without_search()), has one equilibrium,
-/// which is returned for all points.
+/// taut rod, or one with negligible bending stiffness (shape_without_search()), has one
+/// equilibrium, which is returned for all points.
 /// @param arc_lengths  arc lengths of the points [m], strictly growing, in [0, length], two or more
 /// @param points       positions [m], 3 x M
 /// @throws std::invalid_argument as solve_energy(), or if the points are out of range
@@ -69,9 +69,9 @@ Equilibrium energy_near(const Problem& problem, const std::vector<double>& arc_l
 
 /// A kind of initial guess that a search for all equilibria has used.
 struct SearchStrategy {
-  std::string name;     ///< description of the initial guess and of the solver that starts from it
-  int tried = 0;        ///< number of initial guesses
-  int found_first = 0;  ///< number of equilibria that no earlier initial guess had converged to
+  std::string name;  ///< description of the initial guess and of the solver that starts from it
+  int tried = 0;     ///< number of initial guesses
+  int new_equilibria = 0;  ///< number of equilibria that no earlier initial guess had converged to
 };
 
 /// Result of a search for all equilibria: the equilibria, the initial guesses used, and those not

@@ -98,7 +98,7 @@ struct [[nodiscard]] Equilibrium {
   /// is followed.
   std::vector<double> stable_energies;
   /// `energy`: number of initial guesses of the search that pass obstacles on another side.
-  int passing_starts = 0;
+  int other_side_starts = 0;
   /// Largest depth of the axis behind a rigid obstacle, between the solver's nodes too [m]; 0
   /// without such obstacles. A shape is not_verified if the depth exceeds `allowed_penetration`
   /// lengths, for `exact` a tenth of that.

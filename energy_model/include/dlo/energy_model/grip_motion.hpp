@@ -32,7 +32,7 @@ struct MotionValue {
 };
 
 /// Returns the motion of a grip that stays at a position.
-[[nodiscard]] GripMotion standing(const Eigen::Vector3d& position);
+[[nodiscard]] GripMotion fixed_grip(const Eigen::Vector3d& position);
 
 /// Returns the motion of a grip that moves along an axis and rotates about another axis through its
 /// own position.

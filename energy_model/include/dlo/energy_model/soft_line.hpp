@@ -8,10 +8,10 @@ namespace dlo::energy_model {
 
 /// EI / (w l^3) below which both models treat a rod as a line. The bending layers at its ends are
 /// then shorter than 1e-5 l, which neither a series nor shots resolve.
-inline constexpr double line_stiffness = 1e-10;
+inline constexpr double catenary_limit_stiffness = 1e-10;
 
-/// Whether EI / (w l^3) of the rod, w its weight per length, is less than line_stiffness.
-[[nodiscard]] bool is_soft_line(const Problem& problem);
+/// Whether EI / (w l^3) of the rod, w its weight per length, is less than catenary_limit_stiffness.
+[[nodiscard]] bool is_catenary_limit(const Problem& problem);
 
 /// Computes the equilibrium of a round, intrinsically straight rod of small EI / (w l^3) under its
 /// weight, without loads and sections, that is held at both ends or hangs from a clamp at one. It
@@ -32,12 +32,12 @@ inline constexpr double line_stiffness = 1e-10;
 /// equilibria are not searched for.
 /// @return std::nullopt for another kind of problem, for a grip that bends the rod by more than 170
 /// deg, and if layers overlap each other or the contact
-[[nodiscard]] std::optional<Equilibrium> soft_line(const Problem& problem);
+[[nodiscard]] std::optional<Equilibrium> catenary_limit(const Problem& problem);
 
 /// Returns the shape that solve_energy() and solve_exact() return without a search: taut_line(), or
-/// soft_line() if is_soft_line() and its error_estimate is at most 1e-7 of the length; else
-/// std::nullopt. The balance is verified (balance.hpp), for a soft line to its error_estimate.
+/// catenary_limit() if is_catenary_limit() and its error_estimate is at most 1e-7 of the length;
+/// else std::nullopt. The balance is verified (balance.hpp), for a soft line to its error_estimate.
 /// @throws std::invalid_argument as taut_line()
-[[nodiscard]] std::optional<Equilibrium> line_without_search(const Problem& problem);
+[[nodiscard]] std::optional<Equilibrium> shape_without_search(const Problem& problem);
 
 }  // namespace dlo::energy_model

@@ -51,7 +51,8 @@ struct HeldTurns {
 
 /// Returns the turns that two neighbouring clamps prescribe.
 /// @throws std::invalid_argument as held_d1()
-[[nodiscard]] HeldTurns turns_between(const Problem& problem, const Grip& first, const Grip& last);
+[[nodiscard]] HeldTurns prescribed_turns(const Problem& problem, const Grip& first,
+                                         const Grip& last);
 
 /// Returns the angle by which the frame at the end of a shape that ignores the end frame has to be
 /// rotated [rad], so that the shape has the prescribed turns. If only its writhe modulo two is
@@ -59,8 +60,8 @@ struct HeldTurns {
 /// @param ahead   angle from the shape's d1 to the prescribed d1 without roll, up to whole turns
 ///               [rad]
 /// @param twist   twist of the shape [rad]
-/// @param writhe  writhe of the shape; empty: unknown, `ahead` is reduced to (-pi, pi]
-[[nodiscard]] double turned_angle(const HeldTurns& held, double ahead, double twist,
+/// @param writhe  writhe of the shape; empty: unknown, `frame_angle` is reduced to (-pi, pi]
+[[nodiscard]] double end_rotation(const HeldTurns& held, double frame_angle, double twist,
                                   const std::optional<Writhe>& writhe);
 
 /// Returns the writhe of a curve. If the curve or a line beyond its ends passes through it, as for
@@ -73,8 +74,8 @@ struct HeldTurns {
 /// frames along the shape belong to the other homotopy class. Returns 0 if the turns or the writhe
 /// are unknown.
 /// @param twist  twist of the shape [rad]
-[[nodiscard]] std::optional<int> turns_lost(const HeldTurns& held, double twist,
-                                            const std::optional<Writhe>& writhe);
+[[nodiscard]] std::optional<int> missing_turns(const HeldTurns& held, double twist,
+                                               const std::optional<Writhe>& writhe);
 
 /// Returns the writhe modulo two of a curve with these tangents, joined by great arcs. It compares
 /// the rotation of a frame without twist, lifted to unit quaternions, with the shortest rotation of

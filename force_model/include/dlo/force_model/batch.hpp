@@ -10,7 +10,7 @@
 
 namespace dlo::force_model {
 
-class Lockstep;
+class BatchBlock;
 
 /// Rod, initial points and step settings of one rod of a batch.
 struct BatchRod {
@@ -81,10 +81,10 @@ class Batch {
   [[nodiscard]] long steps(std::size_t index) const;
 
  private:
-  [[nodiscard]] const Lockstep& block_of(std::size_t index) const;
+  [[nodiscard]] const BatchBlock& block_of(std::size_t index) const;
 
   std::size_t size_ = 0;
-  std::vector<Lockstep> blocks_;
+  std::vector<BatchBlock> blocks_;
 };
 
 }  // namespace dlo::force_model

@@ -27,7 +27,7 @@ struct Rod {
   Eigen::VectorXd masses = {};
 
   /// Whether there are walls or solids.
-  [[nodiscard]] bool touches_anything() const { return !walls.empty() || !solids.empty(); }
+  [[nodiscard]] bool has_obstacles() const { return !walls.empty() || !solids.empty(); }
   /// Returns the number of points, N = n + 1.
   [[nodiscard]] Eigen::Index points() const { return rest_lengths.size() + 1; }
   /// Returns the sum of all rest lengths [m].

@@ -10,7 +10,7 @@
 
 namespace dlo::force_model {
 
-class Lockstep;
+class BatchBlock;
 
 /// Rod whose points move in simulated time. Steps do not allocate. They run on a kernel that is
 /// vectorised over the points and agrees with total_forces to rounding.
@@ -37,12 +37,12 @@ class Simulation {
   /// force thus corresponds to a displacement per second even while movements are scaled down.
   /// @param steps  nominal steps, > 0; @param max_steps  largest number of evaluations
   /// @return the result of the last step (c_m = 0 if none was due); `diverged` if one diverged,
-  /// `behind` if max_steps did not suffice: owed_steps() then remain for the next call
+  /// `behind` if max_steps did not suffice: remaining_steps() then remain for the next call
   [[nodiscard]] StepResult advance(double steps, long max_steps = 10'000'000);
 
   /// Returns the nominal steps that advance() has still to make: requested steps minus the sum of
   /// c_m. It is negative after an overshoot, which is less than a step.
-  [[nodiscard]] double owed_steps() const;
+  [[nodiscard]] double remaining_steps() const;
 
   /// Steps until the rod is at rest. A shape is at rest if its tangent stiffness is positive
   /// definite, and both the Newton step to the equilibrium and the remaining momentum are below the
@@ -86,8 +86,8 @@ class Simulation {
   [[nodiscard]] long limited_steps() const;  ///< steps with d_m > l_s, or StepResult::limited
 
  private:
-  std::unique_ptr<Lockstep> lockstep_;
-  double owed_steps_ = 0;  // expected minus reached sum of c_m (Text 1)
+  std::unique_ptr<BatchBlock> batch_block_;
+  double remaining_steps_ = 0;  // expected minus reached sum of c_m (Text 1)
 };
 
 }  // namespace dlo::force_model

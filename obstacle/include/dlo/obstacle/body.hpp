@@ -46,9 +46,9 @@ class Body {
 
   /// Returns a body inside this one with rounder edges: this body for 0, and for 1 a sphere around
   /// the middle of the core with the body's thickness. Infinite dimensions stay infinite.
-  [[nodiscard]] Body rounded(double share) const;
+  [[nodiscard]] Body with_rounded_edges(double share) const;
   /// Returns the body with its surface moved outwards by `by` [m].
-  [[nodiscard]] Body grown(double by) const;
+  [[nodiscard]] Body enlarged(double by) const;
   /// Returns the body in coordinates in which a point x is turn (x - origin) / unit.
   [[nodiscard]] Body transformed(const Eigen::Vector3d& origin, const Eigen::Matrix3d& turn,
                                  double unit) const;
