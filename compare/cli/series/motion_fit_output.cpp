@@ -86,7 +86,7 @@ std::string motion_toml(const compare::MotionFit& fit, const compare::Scene& sce
   add("quadratic_drag", "N s^2/m^3", fit.quadratic);
   add_rod_lines(
       out, scene, {fit.scene_stiffness.value, interval(fit.scene_stiffness)},
-      {scene.mass_parameter().value, "of the scene"},
+      {scene.mass_parameter().value, "from the scene"},
       fmt::format("least squares of {} recorded motion{}, noise {:.3g} m", fit.recordings.size(),
                   fit.recordings.size() == 1 ? "" : "s", fit.noise));
   return out;

@@ -193,7 +193,7 @@ std::string material_toml(const compare::Calibration& report) {
   add_shape_lines(out, fit);
   add_rod_lines(out, scene, {*E.estimate, interval_text(E)},
                 fit.density ? WrittenValue{*fit.density->estimate, interval_text(*fit.density)}
-                            : WrittenValue{scene.mass_parameter().value, "of the scene"},
+                            : WrittenValue{scene.mass_parameter().value, "from the scene"},
                 fmt::format("least squares of {} measured shape{}, noise {:.3g} m{}",
                             fit.shapes.size(), fit.shapes.size() == 1 ? "" : "s", fit.noise_m,
                             fit.correlation ? ", correlated along the rod" : ""));

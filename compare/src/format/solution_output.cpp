@@ -131,7 +131,7 @@ std::string solution_text(const compare::Solution& solution, const compare::Scen
   }
   if (all.contains("contacts")) count_from_1(all["contacts"]);
   if (all.contains("self_crossing")) {
-    all["self_crossing"]["note"] = "contact of the rod with itself is in no model";
+    all["self_crossing"]["note"] = "contact of the rod with itself is not modelled";
   }
   if (compare::neglects(solution, "friction")) {
     all["neglected"].push_back("(this is the shape without friction; friction could hold others)");

@@ -142,7 +142,7 @@ int MeasuredShapes::frame_numbers() const {
 energy_model::Equilibrium MeasuredShapes::solve(std::size_t shape, const Scene& scene,
                                                 const energy_model::Equilibrium* start) {
   if (reference_model(scene) == Model::exact) return solve_stretched(scene, start);
-  scene.require_potential("the energy model does");
+  scene.require_potential("the energy model");
   energy_model::Problem problem = energy_problem(scene);
   problem.confined_to_plane = is_confined(shape, scene);
   return solve(problem, scene.file, start);

@@ -41,11 +41,8 @@ ForceTrack::ForceTrack(const Scene& now, const energy_model::Equilibrium& rod,
                        const std::vector<std::size_t>& obstacles, const SolveOptions& options)
     : obstacles_(obstacles), settings_(now.force_model) {
   if (plane_transform(now, now.force_model)) {
-    throw InputError(
-        fmt::format("{}: a rod that is intrinsically curved, in a plane that is not z = 0, which a "
-                    "moving polygon "
-                    "is not turned into",
-                    now.file));
+    throw InputError(fmt::format(
+        "{}: the polygon of an intrinsically curved rod moves only in the plane z = 0", now.file));
   }
   discretisation_ = discretise(now, now.force_model);
   set_obstacles(now, obstacles, discretisation_);
@@ -59,8 +56,8 @@ ForceTrack::ForceTrack(const Scene& now, const energy_model::Equilibrium& rod,
                                                               .max_steps = options.max_steps,
                                                               .time_limit = options.time_limit});
   if (result.status == force_model::RelaxStatus::at_rest) return;
-  throw ConvergenceError(fmt::format("{}: the force model did not come to rest at first: {}",
-                                     now.file, result.message));
+  throw ConvergenceError(fmt::format(
+      "{}: the force model did not come to rest before the motion: {}", now.file, result.message));
 }
 
 bool ForceTrack::step(const Scene& now, long steps) {

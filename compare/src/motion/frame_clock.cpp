@@ -79,7 +79,7 @@ std::vector<std::size_t> obstacles_ever_in_reach(const Scene& scene, const Frame
 }
 
 energy_model::Problem frame_problem(const Scene& now, const std::vector<std::size_t>& obstacles) {
-  now.require_potential("the energy model does");
+  now.require_potential("the energy model");
   energy_model::Problem problem = energy_problem(now);
   problem.obstacles.clear();
   for (const std::size_t i : obstacles) {

@@ -201,12 +201,13 @@ void require_dynamic(const Scene& scene) {
              "how the frame rotates with it (allowed: positions and rolls that move)");
     }
   }
-  scene.require_potential("the moving rod does");
+  scene.require_potential("the rod with inertia");
   if (scene.has_couples()) {
-    refuse(scene.file, "a load's torque, which has no potential (allowed: forces)");
+    refuse(scene.file, "load.torque: not supported by the rod with inertia (allowed: forces)");
   }
   if (scene.drag && scene.drag->tangential > 0) {
-    refuse(scene.file, "medium.tangential_drag, which the moving rod does not take (allowed: 0)");
+    refuse(scene.file,
+           "medium.tangential_drag: not supported by the rod with inertia (allowed: 0)");
   }
   if (!(scene.mass() > 0)) refuse(scene.file, "the rod has no mass (allowed: > 0 kg)");
 }

@@ -189,7 +189,7 @@ SteppedMode stepped_mode(double stiffness, double c_F, double c_h, double rate) 
 }
 
 SceneModes scene_modes(const Scene& scene, const ModeOptions& options) {
-  scene.require_no_couples("the linearised motion does");
+  scene.require_no_couples("the linearised motion");
   SceneModes result;
   energy_model::Vibrations found;
   const energy_model::VibrationOptions step_settings = {

@@ -155,7 +155,7 @@ void derive_unlike_joints(const Scene& scene, const ForceModelSettings& settings
   if (plane_transform(scene, settings)) {
     throw InputError(fmt::format(
         "{}: rod.natural_curvature: not in the plane z = 0 (allowed here: z = 0 of positions, "
-        "directions, forces and normals; dlo solve and dlo compare turn other planes into it)",
+        "directions, forces and normals; dlo solve and dlo compare rotate other planes into it)",
         scene.file));
   }
   bending.natural_turns.resize(joints);
@@ -278,12 +278,12 @@ void set_obstacles(const Scene& scene, const std::vector<std::size_t>& obstacles
 Discretisation discretise(const Scene& scene, const ForceModelSettings& settings) {
   if (settings.joint_law) {
     throw InputError(fmt::format(
-        "{}: force_model.joint_law = \"{}\": no other model than chain has it (allowed: dlo solve "
-        "--model chain, or no joint_law)",
+        "{}: force_model.joint_law = \"{}\": only model chain supports this key (allowed: dlo "
+        "solve --model chain, or no joint_law)",
         scene.file, to_string(*settings.joint_law)));
   }
   require_round(scene);
-  scene.require_no_couples("the polygons of models force and chain do");
+  scene.require_no_couples("the polygons of models force and chain");
   const Layout layout = lay_out(scene, settings);
   const double L = layout.segment_length;
   Discretisation result;

@@ -24,8 +24,7 @@ std::optional<energy_model::Drag> read_drag(StrictTable& table, double density, 
   if (!table.has("velocity")) return std::nullopt;
   if (!(diameter > 0)) {
     table.fail("velocity",
-               "of a flat rod, whose drag no model has (allowed: [rod] with diameter, or no "
-               "velocity)");
+               "drag on a flat rod is not modelled (allowed: [rod] with diameter, or no velocity)");
   }
   energy_model::Drag drag;
   drag.velocity = table.vector("velocity");
@@ -46,7 +45,8 @@ PointLoad read_load(StrictTable& table, const Scene& scene) {
   table.read("follows", load.follows);
   if (has_mass) {
     if (load.follows) {
-      table.fail("follows", "of a mass, which hangs along gravity (allowed: force and torque)");
+      table.fail("follows",
+                 "the weight of a mass keeps its direction (allowed: with force or torque)");
     }
     load.force = load.mass * scene.gravity;
   } else if (!table.read("force", load.force) && !has_torque) {
@@ -79,10 +79,9 @@ void read_medium(StrictTable& table, Scene& scene) {
   const double density = table.number("density");
   const double section = displaced_area(scene);
   if (!(section > 0)) {
-    table.fail(
-        "density",
-        "of a rod whose volume is not known (allowed: [rod] with diameter, or with width and "
-        "thickness, or no [medium])");
+    table.fail("density",
+               "the rod's volume is not known (allowed: [rod] with diameter, or with width and "
+               "thickness, or no [medium])");
   }
   scene.drag = read_drag(table, density, scene.diameter);
   if (scene.drag && scene.drag->largest() > 0 && !scene.obstacles.empty()) {
@@ -101,7 +100,7 @@ void check_turning_loads(const Scene& scene, const std::vector<StrictTable>& ent
     if (load.torque.isZero(0) && !load.follows) continue;
     if (!scene.obstacles.empty()) {
       entries[i].fail(load.follows ? "follows" : "torque",
-                      "beside obstacles, with which no model takes it (allowed: no obstacles, or "
+                      "no model supports this together with obstacles (allowed: no obstacles, or "
                       "forces that keep their direction)");
     }
     if (!load.follows) continue;
@@ -110,7 +109,7 @@ void check_turning_loads(const Scene& scene, const std::vector<StrictTable>& ent
     };
     if (std::any_of(scene.grippers.begin(), scene.grippers.end(), clamped)) {
       entries[i].fail("follows",
-                      "at a clamp, which would hold it (allowed: true where no clamp is)");
+                      "not supported at the position of a clamp (allowed: true elsewhere)");
     }
   }
 }

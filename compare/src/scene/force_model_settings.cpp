@@ -59,9 +59,9 @@ double paper_bending_stiffness(BendingRule rule, double bending_stiffness, doubl
                                double segment_length) {
   const double alpha = curvature * segment_length;
   if (!(bending_stiffness > 0) || !(alpha > 0 && alpha < std::numbers::pi)) {
-    throw std::invalid_argument(
-        fmt::format("paper_bending_stiffness: EI = {}, L k = {}, must be > 0 and in (0, pi)",
-                    bending_stiffness, alpha));
+    throw std::invalid_argument(fmt::format(
+        "paper_bending_stiffness: EI = {} (allowed: > 0), L k = {} (allowed: in (0, pi))",
+        bending_stiffness, alpha));
   }
   const double half = std::sin(alpha / 2);
   const double formula_21 =

@@ -47,21 +47,21 @@ bool Scene::has_couples() const { return std::ranges::any_of(loads, has_couple);
 void Scene::require_potential(const char* who) const {
   if (drag && drag->largest() > 0) {
     throw InputError(fmt::format(
-        "{}: medium.velocity: drag, which has no potential and which {} not take (allowed: dlo "
-        "solve --model exact or force)",
+        "{}: medium.velocity: drag has no potential and is not supported by {} (allowed: dlo solve "
+        "--model exact or force)",
         file, who));
   }
   const auto follower = std::ranges::find_if(loads, &PointLoad::follows);
   if (follower != loads.end()) {
     throw InputError(fmt::format(
-        "{}: load.follows: the load at {:g} m turns with the rod, which has no potential and which "
-        "{} not take (allowed: dlo solve --model exact)",
+        "{}: load.follows: the load at {:g} m rotates with the rod, has no potential and is not "
+        "supported by {} (allowed: dlo solve --model exact)",
         file, follower->at, who));
   }
   if (!has_couples() || energy_model::has_potential(scene_problem(*this))) return;
   throw InputError(fmt::format(
-      "{}: load.torque: out of a plane, where a couple that keeps its axis has no potential, so "
-      "that {} not take it (allowed: dlo solve --model exact)",
+      "{}: load.torque: out of a plane a couple that keeps its axis has no potential and is not "
+      "supported by {} (allowed: dlo solve --model exact)",
       file, who));
 }
 
@@ -69,10 +69,10 @@ void Scene::require_no_couples(const char* who) const {
   require_potential(who);
   const auto couple = std::ranges::find_if(loads, has_couple);
   if (couple == loads.end()) return;
-  throw InputError(
-      fmt::format("{}: load.torque: the couple at {:g} m, which {} not take (allowed: dlo solve "
-                  "--model energy or exact)",
-                  file, couple->at, who));
+  throw InputError(fmt::format(
+      "{}: load.torque: the couple at {:g} m is not supported by {} (allowed: dlo solve "
+      "--model energy or exact)",
+      file, couple->at, who));
 }
 
 }  // namespace dlo::compare

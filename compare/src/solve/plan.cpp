@@ -142,11 +142,12 @@ Neglected neglected_twist(const Scene& scene, const Plan& plan) {
             unbounded, "the grippers hold the rod's frame"};
   }
   if (!scene.has_material_directors()) {
-    return {"twist", "all", 0, "none in a round, naturally straight rod free to twist"};
+    return {"twist", "all", 0,
+            "no twist of a round, intrinsically straight rod that is free to rotate"};
   }
   // A strip may buckle out of its plane.
   if (plan.planar && !scene.has_two_stiffnesses()) {
-    return {"twist", "chain, force", 0, "none in a plane"};
+    return {"twist", "chain, force", 0, "no twist of a planar shape"};
   }
   return {"twist", "chain, force", unbounded,
           scene.naturally_bent() ? "a rod that is intrinsically curved twists in space"
@@ -164,8 +165,8 @@ Neglected neglected_natural(const Scene& scene) {
 
 Neglected neglected_friction(const Plan& plan) {
   return {"friction", "all", unbounded,
-          plan.contact ? "the shape is one of all that friction could hold"
-                       : "none in the shape found, but friction could hold one that touches"};
+          plan.contact ? "with friction, other shapes are in equilibrium too"
+                       : "no contact in this shape; friction could hold a shape that touches"};
 }
 
 /// Sets the effect of neglecting something: the distance from the lowest shape without it.
@@ -305,7 +306,7 @@ double Plan::bound(const std::string& what) const {
 Plan make_plan(const Scene& scene, const PlanOptions& options) {
   if (!(options.target > 0) || !(options.gripper_speed >= 0) || !(options.time_limit > 0)) {
     throw std::invalid_argument(fmt::format(
-        "make_plan: target = {}, gripper_speed = {}, time_limit = {}, must be > 0, >= 0 and > 0",
+        "make_plan: target = {} (allowed: > 0), gripper_speed = {} (>= 0), time_limit = {} (> 0)",
         options.target, options.gripper_speed, options.time_limit));
   }
   // A rod that stretches is planned with its shape without stretch.

@@ -185,7 +185,7 @@ energy_model::Equilibrium solve_reference(const Scene& scene, Model model,
   if (model == Model::exact && scene.stretch == Stretch::automatic) {
     return decide_stretch(scene, model, options).rod;
   }
-  if (model == Model::energy) scene.require_potential("the energy model does");
+  if (model == Model::energy) scene.require_potential("the energy model");
   if (model == Model::energy) refuse_stretch(scene);
   if (model == Model::exact) refuse_stretch_beside_obstacles(scene, nullptr);
   const energy_model::Problem problem = energy_problem(scene);
@@ -217,7 +217,7 @@ energy_model::Equilibrium solve_reference(const Scene& scene, Model model,
 }
 
 energy_model::EnergySearch search_states(const Scene& scene, const SolveOptions& options) {
-  scene.require_potential("the energy model does");
+  scene.require_potential("the energy model");
   refuse_stretch(scene);
   energy_model::EnergySearch search;
   std::vector<energy_model::Equilibrium>& states = search.equilibria;
@@ -244,7 +244,7 @@ energy_model::EnergySearch search_states(const Scene& scene, const SolveOptions&
 
 energy_model::Equilibrium reference_near(const Scene& scene, const Shape& shape,
                                          const SolveOptions& options) {
-  scene.require_potential("the energy model does");
+  scene.require_potential("the energy model");
   refuse_stretch(scene);
   try {
     energy_model::Equilibrium near =

@@ -287,11 +287,11 @@ BenchmarkReport run_benchmark(const std::vector<Scene>& scenes, const BenchmarkO
                               const Stages& progress) {
   if (!(options.budget_s > 0) || options.repeats < 1 || !(options.gripper_speed > 0) ||
       options.frames < 1 || !(options.program_time_limit > 0)) {
-    throw std::invalid_argument(
-        fmt::format("run_benchmark: budget_s = {}, repeats = {}, gripper_speed = {}, frames = {}, "
-                    "program_time_limit = {}, must be > 0, >= 1, > 0, >= 1 and > 0",
-                    options.budget_s, options.repeats, options.gripper_speed, options.frames,
-                    options.program_time_limit));
+    throw std::invalid_argument(fmt::format(
+        "run_benchmark: budget_s = {} (allowed: > 0), repeats = {} (>= 1), gripper_speed = "
+        "{} (> 0), frames = {} (>= 1), program_time_limit = {} (> 0)",
+        options.budget_s, options.repeats, options.gripper_speed, options.frames,
+        options.program_time_limit));
   }
   if (scenes.empty()) return run_benchmark(benchmark_scenes(), options, progress);
   BenchmarkReport report;

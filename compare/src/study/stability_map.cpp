@@ -222,10 +222,10 @@ std::vector<double> measured_limits(const StabilityMap& map, std::size_t columns
 
 StabilityMap stability_map(const Scene& scene, const StabilityMapOptions& options) {
   if (options.columns < 1 || options.rows < 2 || options.steps < 1 || options.threads < 0) {
-    throw std::invalid_argument(
-        fmt::format("stability_map: columns = {}, rows = {}, steps = {}, threads = {}; must be "
-                    ">= 1, 2, 1, 0",
-                    options.columns, options.rows, options.steps, options.threads));
+    throw std::invalid_argument(fmt::format(
+        "stability_map: columns = {} (allowed: >= 1), rows = {} (>= 2), steps = {} (>= 1), "
+        "threads = {} (>= 0)",
+        options.columns, options.rows, options.steps, options.threads));
   }
   const std::vector<RodAtRest> rods = rods_of(scene, options);
   StabilityMap map{.scene = scene.name, .axis = options.axis};

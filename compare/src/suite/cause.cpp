@@ -118,7 +118,7 @@ class Diagnosis {
           "the first element does not bend: half an element is too stiff at each clamp");
     } else if (is_clamped && !converges && best->clamp == ChainClamp::hinge) {
       add("hinge at the clamp", half,
-          "the hinge at the clamp has a spring of EI/h: half an element is too soft there");
+          "the hinge at the clamp has a spring of EI/h, which is too soft by half an element");
     }
     if (best->is_law_identified && best->law == energy_model::JointLaw::linear) {
       add("springs linear in the angle", undefined,
@@ -252,8 +252,9 @@ class Diagnosis {
     if (!(best.value < balanced) || std::abs(best.x - 1) < other) return false;
     if (!(left(coarsest(), best.x) < limits::rest_imbalance_limit)) return false;
     add("springs with a power of the angle", best.x,
-        fmt::format("moments balance if they go with the power {:.2g} of the joints' angles",
-                    best.x));
+        fmt::format(
+            "moments balance if they are proportional to the power {:.2g} of the joints' angles",
+            best.x));
     return true;
   }
 

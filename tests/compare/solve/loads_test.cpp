@@ -65,7 +65,7 @@ TEST(Loads, RefusalsNameTheKeyThePlaceAndWhatIsAllowed) {
   expect_load_refused("[[load]]\nat = 0.5\nmass = 1\nfollows = true\n",
                       {"my.toml:12", "load.follows", "mass"});
   expect_load_refused("[[load]]\nat = 0\nforce = [0, 1, 0]\nfollows = true\n",
-                      {"my.toml:12", "load.follows", "at a clamp"});
+                      {"my.toml:12", "load.follows", "position of a clamp"});
   expect_load_refused("[[load]]\nat = 1\nforce = [0, 1, 0]\nfollows = 1\n",
                       {"my.toml:12", "load.follows", "true or false"});
   expect_load_refused(
@@ -218,7 +218,7 @@ TEST(Loads, PolygonsNameTheOneThatTheyDoNotTake) {
     for (const Model model : {Model::chain, Model::force}) {
       EXPECT_TRUE(
           has_all(error_of<InputError>([&] { return solve(scene, model); }),
-                  {"my.toml: load.", "the polygons of models force and chain do not take",
+                  {"my.toml: load.", "not supported by the polygons of models force and chain",
                    load.starts_with("torque") ? "the couple at 0.7 m" : "the load at 0.7 m"}));
     }
   }

@@ -254,12 +254,11 @@ struct Scene {
   /// Whether a load has a couple.
   [[nodiscard]] bool has_couples() const;
   /// Checks that all loads have a potential (energy_model::has_potential).
-  /// @param who  subject and verb for the message, such as "the energy model does"
+  /// @param who  model or computation that the message names, such as "the energy model"
   /// @throws InputError that names the drag, the first load that follows the rod, or the couples
   void require_potential(const char* who) const;
   /// Checks that no load has a couple, and that all have a potential.
-  /// @param who  subject and verb for the message, such as "the polygons of models force and chain
-  /// do"
+  /// @param who  model or computation that the message names
   /// @throws InputError as require_potential(), or that names the first load with a couple
   void require_no_couples(const char* who) const;
   /// Returns int 1/GJ ds between two arc lengths [1/(N m)], with sections, for a rod that has a GJ.
