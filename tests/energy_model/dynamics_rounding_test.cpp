@@ -108,8 +108,8 @@ void expect_pendulum(const Dynamics& moved, const std::vector<double>& times, do
   }
 }
 
-// EI = 2e-6 N m^2 and 0.3 kg: the potential of the load is 1e6 bending energies, and its rounding
-// is no error of a step.
+// With EI = 2e-6 N m^2 and 0.3 kg the potential of the load is 1e6 times the bending energy. Its
+// rounding must not count as an error of a step.
 TEST(DynamicsRounding, APayloadOnASoftThreadIsAPendulum) {
   constexpr double thread = 1e-3;
   const std::vector<double> times = {0.25, 0.5};
@@ -118,9 +118,10 @@ TEST(DynamicsRounding, APayloadOnASoftThreadIsAPendulum) {
                   times, 2 * thread / payload);
 }
 
-// The thread's stiffness is geometric, that of its tension, of which bending is 1e-6. Without it in
-// Newton's matrix only steps of about a radian of the fastest mode converge: 4500 of them. Waves of
-// (T / m)^(1/2) = 17 m/s cross the thread in 0.06 s.
+// The stiffness of the thread is geometric, due to its tension; the bending stiffness is 1e-6 of
+// it. If Newton's matrix lacked the geometric stiffness, only steps of about one radian of the
+// fastest mode would converge, 4500 in all. Waves of (T / m)^(1/2) = 17 m/s cross the thread in
+// 0.06 s.
 TEST(DynamicsRounding, AnUndampedThreadUnderTensionTakesTheStepsOfItsMotion) {
   constexpr double thread = 1e-2;
   const std::vector<double> times = {0.1, 0.2};

@@ -1,5 +1,5 @@
-// The moving rod against its own energy, a polygon of rigid segments that is integrated otherwise,
-// vibrations, and the shapes at rest that slow motion comes to.
+// Tests of the moving rod against its energy balance, against a polygon of rigid segments with
+// another integrator, against vibrations, and against the equilibria that slow motion approaches.
 
 #include "dlo/energy_model/dynamics.hpp"
 
@@ -77,8 +77,8 @@ StartingVelocities velocities_between(const MovingFrame& before, const MovingFra
   };
 }
 
-// Velocities by differences over h are off by h^2 / 6 times a third derivative, some 1e-7, and the
-// rest of the motion by as little.
+// Velocities by differences over h have an error of h^2 / 6 times a third derivative, about 1e-7.
+// The motion that continues from them has an error of that size.
 TEST(Dynamics, GoesOnFromTheShapeAndTheVelocitiesOfAMotion) {
   constexpr double middle = 0.7;
   constexpr double h = 1e-4;
@@ -110,7 +110,8 @@ TEST(Dynamics, GoesOnFromTheShapeAndTheVelocitiesOfAMotion) {
   }
 }
 
-// With (90, 135, 180) segments the limit of three is met to 1.1e-6 (Gamma 1) and 1.0e-5 (Gamma 10).
+// Extrapolated from 90, 135 and 180 segments, the polygon would agree to 1.1e-6 (Gamma 1) and
+// 1.0e-5 (Gamma 10).
 TEST(Dynamics, ReleasedCantileverMovesAsAPolygonAndAsWithMoreTermsAndSmallerSteps) {
   const std::vector<double> times = equal_times(10, 0.1);
   for (const auto& [gamma, allowed] : {std::pair(1.0, 1e-5), std::pair(10.0, 4e-5)}) {
@@ -129,8 +130,9 @@ TEST(Dynamics, ReleasedCantileverMovesAsAPolygonAndAsWithMoreTermsAndSmallerStep
   }
 }
 
-// Starts from a mode's shape at rest and is there again after its period, but for the square of its
-// size; with damping it decays as exp(-zeta omega t), zeta = tau omega / 2 + c / (2 rho A omega).
+// The rod starts from a mode's shape at rest and returns to it after the period, up to the square
+// of the amplitude. With damping the amplitude decreases as exp(-zeta omega t), where
+// zeta = tau omega / 2 + c / (2 rho A omega).
 TEST(Dynamics, SmallMotionsAreVibrationsThatDecay) {
   MovingRod rod = moving_cantilever(3);
   const Equilibrium shape = solve_energy(rod.problem);
@@ -186,7 +188,7 @@ TEST(Dynamics, MaterialDampingIsKelvinsAndVoigts) {
 }
 
 TEST(Dynamics, GripsDoTheWorkThatTheEnergyTakes) {
-  // A clamp that shakes and turns, in the plane and out of it.
+  // The clamp oscillates and rotates, in the plane and out of it.
   MovingRod rod = moving_cantilever(5);
   rod.air_drag = 0.5;
   rod.inertia.point_masses = {{0.6, 0.3}};
@@ -200,7 +202,7 @@ TEST(Dynamics, GripsDoTheWorkThatTheEnergyTakes) {
                                 {.terms = 8, .tolerance = 1e-6});
     EXPECT_LT(result.energy_error, 1e-7) << spatial;
     EXPECT_GT(std::abs(result.frames.back().energy.work), 0.01);
-    // A round rod that may turn about itself cannot pass a torque on to its clamp.
+    // A round rod that may rotate about its axis exerts no torque about it on the clamp.
     const MovingFrame& last = result.frames.back();
     const Vector3d direction = last.sample(std::vector<double>{0.0}).tangents.col(0);
     EXPECT_NEAR(last.grips[0].torque.dot(direction), 0, 1e-9 * last.grips[0].torque.norm());

@@ -106,8 +106,9 @@ ShotFromTheTip shoot_from_tip(double gamma, double tip_angle) {
   return shot;
 }
 
-// Self-buckling is at Gamma = 7.8373474: up to there 6e-8 are left, and a tilt of 1e-9 shows at the
-// tip a million times. The steps and the trapezoidal rule are right to 2e-9 here.
+// Self-buckling is at Gamma = 7.8373474. Close to it a tilt of 1e-9 rotates the tip by up to a
+// million times that angle. The steps and the trapezoidal rule of the reference are accurate to
+// 2e-9 here.
 TEST(Energy, NextToBucklingTheErrorStatedCoversTheTrueOne) {
   for (const double below : {1e-4, 1e-5, 1e-6, 1e-7, 1e-8, 1e-9}) {
     for (const double tilt : {1e-7, 1e-8, 1e-9, 1e-11}) {

@@ -209,8 +209,9 @@ TEST(ExactContact, ConfirmsStripsAndSections) {
   EXPECT_EQ(confirmation.confirmed, confirmation.touching);
 }
 
-// A weightless rod that is lifted by more than the ball's radius comes down along the ball, about
-// the clamp's axis; lifted by less it stays. On a peg along z there is no way down.
+// A weightless rod that a ball lifts by more than its radius slides off the ball, by rotation about
+// the clamp's axis. If it is lifted by less, it stays on the ball. From a peg along z it cannot
+// slide off.
 TEST(ExactContact, ARodOverABallFallsOffWhereItsCentreIsAboveTheClampsAxis) {
   constexpr double radius = 0.05;
   const auto with = [](bool ball, double height) {
@@ -301,7 +302,7 @@ TEST(ExactContact, ToleranceIsThatOfTheIntegratorWhereTheRodTouchesToo) {
   const Equilibrium coarse =
       test::require_usable(solve_exact(problem, {.tolerance = 1e-3, .start = &energy}));
   const double off = (coarse.sample(at).points - fine).colwise().norm().maxCoeff();
-  EXPECT_GT(off, 1e-12);  // it is not taken as 1e-13
+  EXPECT_GT(off, 1e-12);  // the tolerance has an effect
   EXPECT_LT(off, 1e-3);
 }
 

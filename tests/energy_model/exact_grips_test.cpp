@@ -16,7 +16,7 @@ namespace dlo::energy_model {
 namespace {
 
 TEST(MultipleShooting, FindsWhatTheScanOfOneClampFinds) {
-  // A clamp in the middle makes two cantilevers of the rod, which the scan takes one by one.
+  // A clamp in the middle divides the rod into two cantilevers, which the scan solves separately.
   const std::vector<double> s = equal_arc_lengths(0.5, 21);
   for (const double gamma : {0.5, 8.0, 80.0, 800.0, 8000.0}) {
     for (const double degrees : {-60.0, 0.0, 45.0, 80.0}) {

@@ -69,7 +69,7 @@ TEST(SecondVariation, SeesWhatBucklesOutOfPlane) {
 }
 
 TEST(SecondVariation, CountsTheZeroModeOfARod) {
-  // An arch between two pins without weight turns about the line through them.
+  // An arch between two pins without weight is free to rotate about the line through them.
   Problem arch = heavy_cantilever(0, 0);
   arch.grips = {{0, Eigen::Vector3d::Zero(), std::nullopt}, {1, {0.8, 0, 0}, std::nullopt}};
   const Equilibrium result = test::converged(solve_exact(arch));

@@ -140,8 +140,9 @@ TEST(Keep, FollowsAPointUntilItLiesAndBack) {
   ASSERT_TRUE(there);
   const Eigen::Vector3d held = there->grips[0].force.normalized();
   const double phi = std::acos(held.y()) / 2;
-  // The clearance is r s^2 / 2 + F |s|^3 / 12 EI beside a point with the force F: behind the peg
-  // by 8 |r|^3 / 3 F^2, which may be 1e-9 of the length, and then phi is off by
+  // At the distance s from a point contact with the force F the clearance is
+  // r s^2 / 2 + F |s|^3 / (12 EI), where r is the relative curvature. For r < 0 the rod penetrates
+  // the peg by 8 |r|^3 / (3 F^2), of which 1e-9 of the length is allowed. The error of phi is then
   // 2 tan(phi / 2) |r| R.
   const double force = there->contacts.at(0).force.norm();
   const double curvature = std::cbrt(1e-9 * 3 * force * force / 8);

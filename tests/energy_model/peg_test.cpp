@@ -53,9 +53,9 @@ TEST(Peg, TautRodLeavesItWhereItsCurvatureIsThePegs) {
   }
 }
 
-// Over an edge a rod with the overhang a lifts off the table at 2^(1/2) a behind it, if it is
-// nearly straight: w a^2/2 at the edge is to end in no moment, no slope and no height at b, and so
-// w b^4/24 = w a^2/2 b^2/6.
+// A nearly straight rod with the overhang a lifts off the table at the distance b = 2^(1/2) a
+// behind the edge. The moment at the edge is w a^2 / 2. Moment, slope and height are zero at b,
+// which requires w b^4 / 24 = w a^2 / 2 b^2 / 6.
 TEST(Table, OverhangLiftsTheRodBehindTheEdge) {
   constexpr double overhang = 0.2;
   double last = 1;

@@ -143,8 +143,8 @@ TEST(Polygon, LeavesASaddle) {
     start.col(i) = Eigen::Vector3d(0.95 * static_cast<double>(i) / 41, 0, 0);
   }
   const PolygonResult buckled = test::require_usable(solve_polygon(problem, start));
-  // A column clamped at both ends carries 4 pi^2, and more as it bends: about P (1 + e/2), e its
-  // relative shortening. The polygon is softer by O(L^2).
+  // A column clamped at both ends buckles at P = 4 pi^2. Beyond buckling the load is P (1 + e / 2),
+  // where e is the relative shortening. The polygon is softer by O(L^2).
   const double thrust = buckled.grip_forces.leftCols<2>().rowwise().sum().x();
   const double euler = 4 * std::numbers::pi * std::numbers::pi;
   EXPECT_GT(thrust, euler);
@@ -169,8 +169,9 @@ double smallest_eigenvalue(const Eigen::MatrixXd& hessian) {
       .minCoeff();
 }
 
-// Crumpled polygons in a ball and a floor: all second derivatives have any sign, those that stiffen
-// none below zero. Straight and pulled, clear of obstacles, both are the same.
+// For crumpled polygons within a ball and a floor the complete Hessian is indefinite, and the
+// stiffening part has no negative eigenvalue. For a straight polygon under tension, clear of
+// obstacles, both are equal.
 TEST_P(PolygonOfEveryLaw, StiffeningSecondDerivativesAreNeverNegative) {
   PolygonProblem problem = between_clamps(GetParam(), 12, 0.8, 5);
   problem.stretch_stiffness = 500;

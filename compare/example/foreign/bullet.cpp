@@ -4,10 +4,11 @@
 //
 // SCENE is what `dlo scene --format json` writes, SHAPE becomes a CSV file of the rod's axis. The
 // rod is a btMultiBody (Featherstone's algorithm) with a spherical joint at each hinge; a second
-// clamp is a btMultiBodyFixedConstraint. Only the shape at rest is asked for, which masses have no
-// part in: each body has the same moments of inertia and next to no mass, with which the number of
-// steps to rest grows with N and not with its square, the weight is a force, and motion is stopped
-// whenever it has lost speed (kinetic damping). Needs Bullet in double precision.
+// clamp is a btMultiBodyFixedConstraint. Only the shape at rest is computed, which does not depend
+// on masses. Each body therefore has equal moments of inertia and almost no mass, so that the
+// number of steps to rest is proportional to N, not to N^2. The weight is applied as a force.
+// Velocities are set to zero whenever the speed has decreased (kinetic damping). Needs Bullet
+// in double precision.
 
 #include <BulletDynamics/Featherstone/btMultiBody.h>
 #include <BulletDynamics/Featherstone/btMultiBodyConstraintSolver.h>
@@ -34,7 +35,7 @@ using foreign::Quaternion;
 using foreign::Vector;
 
 constexpr double inertia = 1;      // moment of inertia of each body about its end [kg m^2]
-constexpr double at_rest = 1e-13;  // turn within a step [rad], at the moment of the highest speed
+constexpr double at_rest = 1e-13;  // rotation in a step at the highest speed [rad]
 
 btVector3 to_bullet(const Vector& v) { return {v[0], v[1], v[2]}; }
 btQuaternion to_bullet(const Quaternion& q) { return {q[1], q[2], q[3], q[0]}; }
@@ -88,7 +89,7 @@ class Simulation {
       apply_forces();
       world_.stepSimulation(step_, 0);
       double now = motion();
-      if (now <= before) {  // both are 0 where the rod is at rest from the beginning
+      if (now <= before) {  // both are 0 if the rod starts at rest
         body_.clearVelocities();
         calm = before < at_rest * at_rest ? calm + 1 : 0;
         now = 0;
@@ -112,7 +113,7 @@ class Simulation {
   void build() {
     body_.setBasePos(to_bullet(chain_.first_point));
     body_.setWorldToBaseRot(to_bullet(chain_.frames.front()).inverse());
-    // So little that all of them at the rod's end would not be felt at its first hinge.
+    // The moment of inertia of all masses at the rod's end, about the first hinge, is negligible.
     const double length = chain_.segment.front() * links_;
     const double mass = 1e-4 * inertia / (length * length * links_);
     for (int i = 0; i < links_; ++i) {

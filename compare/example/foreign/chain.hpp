@@ -1,4 +1,4 @@
-// A scene as a chain of hinges, for simulators of rigid bodies that turn in joints.
+// A scene as a chain of hinges, for simulators of rigid bodies with joints.
 //
 // Segments are rods without mass, between the points of the scene's `force_model`; the first is
 // held. A frame of a segment has its first axis along the segment. Needs JSON for Modern C++, no
@@ -173,7 +173,7 @@ inline Chain read_chain(const std::string& path) {
   const nlohmann::json& GJ = scene.at("rod").at("torsional_stiffness_Nm2");
   const double EI = scene.at("rod").at("bending_stiffness_Nm2")[0].get<double>();
   for (const double bend : model.at("joint_stiffness_Nm")) {
-    // Where GJ is not given nothing twists, and any stiffness does.
+    // If GJ is not given, nothing twists the rod, and the torsional stiffness has no effect.
     chain.hinges.push_back({bend, GJ.is_null() ? bend : bend * GJ.get<double>() / EI});
   }
   chain.frames = frames(model.at("start_m").get<std::vector<Vector>>(),

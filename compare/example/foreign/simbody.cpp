@@ -96,7 +96,7 @@ std::vector<foreign::Vector> solve(const Chain& chain) {
   SimTK::SimbodyMatterSubsystem matter(system);
   SimTK::GeneralForceSubsystem forces(system);
   const SimTK::Body::Rigid segment(
-      SimTK::MassProperties(1, Vec3(0), SimTK::Inertia(1, 1, 1)));  // at rest of no effect
+      SimTK::MassProperties(1, Vec3(0), SimTK::Inertia(1, 1, 1)));  // no effect at rest
   std::vector<MobilizedBody> bodies;
   for (std::size_t i = 0; i < chain.hinges.size(); ++i) {
     const SimTK::Transform place =
@@ -105,7 +105,7 @@ std::vector<foreign::Vector> solve(const Chain& chain) {
     MobilizedBody parent = i == 0 ? matter.updGround() : bodies.back();
     bodies.push_back(MobilizedBody::Ball(parent, place, segment, SimTK::Transform()));
   }
-  const SimTK::Force::Custom custom(forces, new Forces(chain, bodies));  // who deletes it
+  const SimTK::Force::Custom custom(forces, new Forces(chain, bodies));  // owns the object
   if (chain.second_clamp) {
     const SimTK::Transform end(to_simbody(chain.frames.back()), to_simbody(chain.last_hinge));
     const SimTK::Constraint::Weld weld(matter.updGround(), end, bodies.back(), SimTK::Transform());

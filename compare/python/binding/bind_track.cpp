@@ -78,7 +78,7 @@ py::object track(const SharedScene& shared, const py::dict& what, const py::obje
   return result;
 }
 
-/// Rows of time, arc length, x, y, z, or as bytes the name of a file.
+/// Recorded motion: rows of time, arc length, x, y, z; or the name of a file, as bytes.
 using RecordedRows = std::variant<py::bytes, std::vector<std::vector<double>>>;
 
 compare::MarkerMotion recorded_motion(const RecordedRows& rows, const std::string& name) {

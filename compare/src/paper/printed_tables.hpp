@@ -41,7 +41,8 @@ enum class PaperWeight {
   printed,   ///< printed_point_weight()
 };
 
-/// Returns the weight of a point that Table 5 prints, although it is that of Table 1's rod [N].
+/// Returns the weight of a point as printed in Table 5 [N]. The number is an error of the paper: it
+/// is the weight of a point of Table 1's rod.
 [[nodiscard]] double printed_point_weight();
 
 /// Returns the c_c with which Fig. 12 was calculated, according to the text [N].

@@ -43,8 +43,8 @@ bool is_frame_of_series(const std::string& file, const std::string& series) {
   const std::string stem = series_stem(series);
   std::error_code unknown;
   const fs::path folder = fs::weakly_canonical(fs::absolute(series).parent_path(), unknown);
-  // The path is compared under its own name too: if a link is named like a frame, its target is
-  // written.
+  // The path is also compared without resolving a link in its last part: a link that is named like
+  // a frame would be opened for writing, which overwrites its target.
   for (const fs::path& path : {fs::weakly_canonical(fs::absolute(file), unknown),
                                fs::weakly_canonical(fs::absolute(file).parent_path(), unknown) /
                                    fs::path(file).filename()}) {

@@ -171,7 +171,8 @@ Eigen::MatrixX3d SpanDynamics::work_gradient(
   return result;
 }
 
-/// Returns the couples of the clamp at the end, per element.
+/// Returns the couple on each element at its end: the couple of the clamp at the end of the span,
+/// and zero for all elements but the last.
 std::vector<Eigen::Vector3d> SpanDynamics::couples(
     const Eigen::Ref<const Eigen::VectorXd>& multipliers) const {
   std::vector<Eigen::Vector3d> result(nodes_.elements().size(), Eigen::Vector3d::Zero());

@@ -215,7 +215,7 @@ Eigen::Vector3d Action::moment_about(const Eigen::Vector3d& origin) const {
 double Imbalance::share() const {
   const double of_force = force / largest_force;
   const double of_moment = moment / largest_moment;
-  // A force that is NaN makes the moment NaN, which this comparison returns.
+  // A force that is NaN makes the moment NaN too, and this comparison then returns the moment.
   return of_force > of_moment ? of_force : of_moment;
 }
 
@@ -278,7 +278,7 @@ Imbalance imbalance_of(const Problem& problem, const Equilibrium& shape) {
   Imbalance result =
       imbalance_of(actions, {.force = {unit / problem.length, 0, 0}, .couple = {unit, 0, 0}});
   for (const Eigen::Vector3d& left : differences) {
-    // NaN in `left` is taken too.
+    // The comparison is false for NaN, so that a NaN in `left` becomes the imbalance.
     result.force = left.norm() <= result.force ? result.force : left.norm();
   }
   return result;

@@ -9,9 +9,9 @@ namespace dlo::energy_model {
 /// equal.
 inline constexpr double negligible_length = 1e-9;
 
-/// A line without bending stiffness under its weight w per length, part of which may lie at the
-/// level of its lowest point. Its arc length s begins at one end of it [m]. With q the arc length
-/// from the lowest point,
+/// Catenary: the shape of a line without bending stiffness under its weight w per length. The line
+/// may lie on a level floor along an interval that begins at its lowest point. Its arc length s is
+/// measured from one of its ends [m]. Where the line hangs, q is the arc length of own(), and
 ///     height = (a^2 + q^2)^(1/2),  x = a asinh(q / a).
 struct Catenary {
   double a = 0;    ///< T / w at the lowest point [m]; 0: a line that hangs straight

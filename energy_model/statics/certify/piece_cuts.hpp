@@ -35,9 +35,9 @@ namespace dlo::energy_model {
 /// per length has a kink at each of them.
 [[nodiscard]] std::vector<double> contact_ends(const SpanSolution& solution);
 
-/// Returns a bound of the force error [in the span's units] of a shape's series if a kink of the
-/// contact force lies within an element: near an end of contact the force per length is at most k
-/// times the distance from the end.
+/// Returns a bound of the force error [in the span's units] of a shape's series whose elements may
+/// contain an end of contact with a soft obstacle. The contact force has a kink there. Near that
+/// end the force per length is at most the obstacle's stiffness times the distance from the end.
 [[nodiscard]] double misplaced_contact_error(const SpanSolution& solution);
 
 /// Passage of a shape through the middle of a soft obstacle.

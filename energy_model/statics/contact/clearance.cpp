@@ -18,8 +18,8 @@ namespace {
 constexpr Eigen::Index grid_points = 1001;
 /// Spacing, in grid points, of the points that are evaluated first.
 constexpr std::size_t coarse_stride = 20;
-/// Number of Newton steps from a grid point to a minimum; they stay between the neighbouring
-/// points.
+/// Number of Newton steps that refine a minimum of the clearance, starting from a grid point. The
+/// steps stay between the neighbouring grid points.
 constexpr int refinements = 6;
 
 /// Number of additional points on each side of a contact's ends, each at half the distance of the

@@ -156,8 +156,10 @@ class ContactSearch {
     if (options_.wants_all()) {
       options_.log->add_starts(without_obstacles, ", as if there were no obstacles");
     }
-    // A shape with contact next to one that obstacles exclude has a higher energy than that one,
-    // but possibly a lower one than shapes clear of obstacles elsewhere.
+    // Obstacles raise the energy: a shape with contact has more energy than the shape without
+    // obstacles from which it is found. It may still have less energy than all shapes that are
+    // clear of obstacles. The search ends here only if the best clear shape has no more energy than
+    // any shape that obstacles exclude.
     if (found_.suffices() && found_.best().energy <= lowest_within) return;
     for (TangentField& start : start_fields(span_)) starts.push_back(std::move(start));
     search_from(starts);

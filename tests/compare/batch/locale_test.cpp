@@ -1,4 +1,4 @@
-// Where people write 2,5 for 2.5, files and outputs are the same.
+// Tests that a locale with a decimal comma does not change how files are read and written.
 
 #include <gtest/gtest.h>
 

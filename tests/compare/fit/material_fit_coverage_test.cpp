@@ -152,9 +152,10 @@ TEST(MaterialFit, TheCorrelationIsMeasured) {
   EXPECT_NEAR(half.correlation->share, 0.5, 0.21);
 }
 
-// The fit takes a part of errors away that are alike over a tenth of the rod: their mean square is
-// told as it was, not as it is left. Some 27 independent ones leave a draw's open to 0.27, and the
-// length that is found with it makes it a little larger.
+// The fit absorbs a part of errors that are correlated over a tenth of the rod. The reported noise
+// is nevertheless that of the errors, not the smaller one of the residuals. A draw has about 27
+// independent errors, so its noise scatters by 0.27, and a little more because the correlation
+// length is estimated too.
 TEST(MaterialFit, TheNoiseOfCorrelatedErrorsIsWhatTheyWere) {
   const Scene scene = heavy_scene(5, 0);
   const energy_model::Equilibrium exact = solve_reference(scene, Model::exact);

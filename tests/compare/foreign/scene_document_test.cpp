@@ -73,7 +73,8 @@ TEST(SceneDocument, JointsTogetherAreAsCompliantAsTheRodBetweenThem) {
   ASSERT_EQ(model.at("segment_m").size(), 15U);
   double compliance = 0;
   for (const double joint : model.at("joint_stiffness_Nm")) compliance += 1 / joint;
-  // From the clamp, in the middle of the first segment, to the middle of the last.
+  // The joints represent the rod from the clamp, which is in the middle of the first segment, to
+  // the middle of the last segment.
   const double rod = 0.8 - model.at("segment_m").back().get<double>() / 2;
   EXPECT_NEAR(compliance, (rod - 0.12) / 6e-3 + 0.12 / 0.05, 1e-10);
   EXPECT_EQ(model.at("held").at(0).at("points_m").size(), 2U);

@@ -40,9 +40,9 @@ FloorBudget floor_budget(const Scene& scene) {
 
 // A rod that a clamp holds level on a floor of stiffness k = c_c / L^2 per length sinks in by
 //     y = w/k (1 - e^(-x) (cos x + sin x)),  x = s (k / 4EI)^(1/4)  (beam on an elastic foundation)
-// whose mean square is (w/k)^2 (1 - 5/4 / x(l)). A rigid floor leaves it straight, so that this is
-// all that is wrong. The polygon's last point stands on the floor's L with half of L's weight,
-// which is of first order in L.
+// whose mean square is (w/k)^2 (1 - 5/4 / x(l)). On a rigid floor the rod is straight, so y is the
+// whole deviation. The polygon's last point has half the weight of the others but the contact
+// stiffness of a whole segment, an error of first order in L.
 TEST(ContactBudget, IsWhatABeamSinksIntoAnElasticFoundation) {
   for (const int points : {16, 32, 64}) {
     Scene scene = rod_over_floor(200, 0);

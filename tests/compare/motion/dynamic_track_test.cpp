@@ -289,7 +289,8 @@ TEST(DynamicTrack, RigidFloorsThatStandOrMoveCarryTheRodAsAtRest) {
   EXPECT_LT((forces[0] - forces[1]).norm(), 1e-3 * forces[0].norm());
 }
 
-/// A straight cantilever of 1 m, 1 N m^2 and 1 kg/m, which a weight of so much per length bends.
+/// Returns a horizontal cantilever of 1 m, 1 N m^2 and 1 kg/m that starts straight.
+/// @param weight  weight per length that bends it [N/m]
 Scene released_rod(double weight) {
   Scene scene =
       parse_scene(fmt::format("gravity = [0, {}, 0]\n[rod]\nlength = 1\nbending_stiffness = 1\n"

@@ -1,6 +1,6 @@
-// Stiffness and damping from recordings that are made by the simulation, with noise: each is of
-// another rod that two grippers, or one, carry another way, and begins in motion that no
-// equilibrium has.
+// Tests of stiffness and damping fitted to recordings, which are simulations with added noise. Each
+// recording has another rod, one or two grippers and another path. The rod moves at its beginning,
+// so that its first shape is no equilibrium.
 
 #include "recording/motion_fit.hpp"
 

@@ -187,7 +187,7 @@ TEST(SteppedMode, IsVerletWithoutDampingAndUnstableBeyondFour) {
   EXPECT_EQ(stepped_mode(0.01, 1, 0.1, 1).omega, 0);
 }
 
-// Masses of the rod make Formula 19 swing as the rod does, with the damping that is asked for.
+// With the rod's masses, Formula 19 has the rod's frequencies and the requested damping.
 TEST(SceneModes, PhysicalStepsSwingAsTheRodDoes) {
   Scene scene = rod_with_lateral_load();
   scene.force_model.points = 48;
@@ -200,7 +200,8 @@ TEST(SceneModes, PhysicalStepsSwingAsTheRodDoes) {
   const SceneModes found = scene_modes(scene, {.count = 2, .rate = rate});
   EXPECT_NEAR(*found.effective_point_mass, physical.point_mass, 1e-9 * physical.point_mass);
   for (const SceneMode& mode : found.modes) {
-    // The tip's point has half the mass of the others, the mean is a little less than theirs.
+    // All points have the mean mass. It is a little less than that of inner points, because the
+    // point at the tip has half of their mass.
     EXPECT_NEAR(mode.stepped->omega / mode.rod.omega(), 1, 0.03);
     EXPECT_TRUE(mode.stepped->is_stable);
   }

@@ -1,5 +1,5 @@
-// The picture of a recorded motion: recordings that are the rod's, late, displaced, in the plane,
-// in space, and of a rod that is straight.
+// Tests of the picture of a recorded motion: recordings that equal the rod's motion, are late or
+// displaced, in the plane and in space, and one of a straight rod.
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

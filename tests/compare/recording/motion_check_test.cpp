@@ -1,5 +1,5 @@
-// A recorded motion against its scene's rod: recordings of known lag, offset and noise, each made
-// by another way than the check's, a solve for each time.
+// Tests of recorded motions compared with the scene's rod. The recordings have a known lag, offset
+// and noise; they are made by an independent solve for each time, not by the motion of the check.
 
 #include "recording/motion_check.hpp"
 

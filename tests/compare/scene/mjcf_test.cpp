@@ -142,8 +142,8 @@ TEST(Mjcf, MuJoCosOwnPointsPassWithoutTheirLastEnd) {
   shape.points.conservativeResize(Eigen::NoChange, 20);
   const MeasuredShape whole = complete_segment_starts(scene, shape);
   ASSERT_EQ(whole.points.cols(), 21);
-  // The last joint turns by a quarter of what the one before does, within its own size:
-  // w h^2 / 2 / (EI / h), with w l = 0.567 N.
+  // The angle of the last joint is extrapolated as a quarter of the angle before it. The error is
+  // below the angle itself, w h^2 / 2 / (EI / h), with w l = 0.567 N.
   EXPECT_LT((whole.points.col(20) - end).norm(), 0.05 * 0.567 * 0.05 * 0.05 / 2 * 0.05 / 0.02413);
   // All bodies of the model. The first one is the world, whose position differs from the start of
   // the first segment.

@@ -50,7 +50,7 @@ TEST(VtkPolyline, IsReadBackExactly) {
   }
 }
 
-// A spring that hangs in space shows how it is turned; a straight rod has no frame to show.
+// The file of a curved rod in space contains its frame; that of a straight rod does not.
 TEST(VtkPolyline, HasTheFrameOfACurvedRod) {
   Scene scene = loaded_arch();
   const Solution straight = solve(scene, Model::energy);
@@ -82,7 +82,8 @@ TEST(VtkPolyline, TitleIsOneLineOfPrintableCharacters) {
   EXPECT_LT(text.find("\nASCII"), 256U);
 }
 
-// At its ends a rod pulls its grippers as they pull it, and its moment is EI times its curvature.
+// At the ends of the rod, tension and moment are those of the grippers; the moment is EI times the
+// curvature.
 TEST(Solution, CurvatureAndTensionAreThoseOfTheGrippers) {
   const Scene scene = loaded_arch();
   for (const Model model : {Model::energy, Model::exact}) {

@@ -128,7 +128,7 @@ TEST_F(MotionSuite, AProgramWithAMotionIsJudged) {
   const json right = scene_card("right");
   EXPECT_EQ(right.at("right"), true) << right.dump(1);
   EXPECT_TRUE(right.at("causes").empty()) << right.dump(1);
-  // The linear form leaves out by how much the tip comes nearer, some 0.5 w^2 / l.
+  // The linear solution neglects the axial displacement of the tip, about 0.5 w^2 / l.
   EXPECT_LT(right.at("runs").at(2).at("rms_over_length"), 5e-3);
   const json heavy = scene_card("heavy");
   EXPECT_EQ(heavy.at("right"), false);

@@ -1,4 +1,4 @@
-// A camera that is not level, and the E of a wire of which much else is unknown.
+// Tests of the fit of a camera's tilt together with E and other unknowns of a wire.
 
 #include <gtest/gtest.h>
 

@@ -1,5 +1,5 @@
-// Writes pictures of a random wire between two clamps in one fixture that is not known accurately
-// (data/mountings has seed 11 of six).
+// Writes six shapes of a random wire, mounted six times between the two clamps of a fixture. The
+// clamps are not known accurately. data/mountings was written with SEED = 11.
 //
 //     dlo_random_wires --write FOLDER SEED
 

@@ -1,4 +1,5 @@
-// How clamps hold a wire about its tangent, which two markers on a gripper do not say.
+// Tests of fitted rolls: rotations of clamps about the tangent, which two markers on a gripper do
+// not determine.
 
 #include <fmt/format.h>
 #include <gtest/gtest.h>
@@ -115,7 +116,7 @@ TEST(RollFit, NaturalCurvatureInSpaceIsFoundWhereNobodySaidHowTheWireWasTurned) 
   const MaterialFit found = fit_material(
       scenes, shapes, {.natural_curvature_terms = 2, .roll_tolerance = 180 * per_degree});
   EXPECT_NEAR(found.youngs_modulus.value.value_or(0), 0.05, 0.002);
-  // Curvature may be found about the opposite direction, and the wire turned by half a turn.
+  // The fit may have the opposite curvature and a roll that differs by half a turn.
   ASSERT_EQ(found.natural_curvature.size(), 2U);
   const double sign = found.natural_curvature[0].y() > 0 ? 1 : -1;
   EXPECT_EQ(found.natural_curvature[0].x(), 0);

@@ -86,9 +86,9 @@ MaterialFit fit(const std::vector<Picture>& pictures, const MaterialFitOptions& 
   return fit_material(scenes, shapes, options);
 }
 
-// Clamps off by 5 degrees, natural curvature up to 3 / l and errors of 0.3 % of the length that are
-// correlated over a fifth of it. An interval of 95 % that is right holds the truth in fewer than 90
-// or in more than 99 of 100 draws less than once in 20 tests.
+// The clamps are misaligned by 5 degrees, the natural curvature is up to 3 / l, and errors of 0.3 %
+// of the length are correlated over a fifth of the length. A correct interval of 95 % contains the
+// truth in 90 to 99 of 100 draws with a probability above 95 %.
 TEST(WireFit, StiffnessBesideCurvatureAndClampAnglesIsWithinFivePercentAndItsIntervalCovers) {
   std::mt19937 random(41);
   constexpr int draws = test::sanitized ? 3 : 100;
@@ -139,7 +139,7 @@ TEST(WireFit, RoundingOfThePointsChangesNoPrintedDigit) {
   }
 }
 
-// Without noise the numbers come back as they were.
+// Without noise the fit returns the true numbers.
 TEST(WireFit, PerfectPicturesGiveBackEveryNumber) {
   std::vector<Picture> pictures;
   for (const double angle : {-40.0, 10.0}) {
@@ -166,10 +166,11 @@ TEST(WireFit, PerfectPicturesGiveBackEveryNumber) {
   EXPECT_LT(found.rms_m, 1e-6);
 }
 
-// The last picture is of a rod that leaves its plane, which is next to where it loses its
-// stability. From the fit with one term of natural curvature, which ends at that limit, steps with
-// three terms end 1 mm (RMS) away from these shapes. With derivatives from differences over 1e-3,
-// steps next to the optimum point uphill: with the second curvature the fit ends 3 mm away.
+// In the last picture the rod has left its plane and is close to the loss of stability. If the fit
+// with three terms of natural curvature started from the fit with one term, which ends at that
+// limit, it would end 1 mm (RMS) away from these shapes. With derivatives from differences over
+// 1e-3, steps close to the optimum would point uphill: with the second curvature the fit would end
+// 3 mm away.
 TEST(WireFit, PerfectPicturesOfAWireThatLeavesItsPlaneGiveBackEveryNumber) {
   for (const double curvature : {1.85, 1.8315}) {
     std::vector<Picture> pictures;

@@ -19,7 +19,7 @@ struct BatchRod {
   StepOptions options;      ///< step settings
 };
 
-/// Vectorised batch of rods with equal number of points, bending law, number of natural turns, step
+/// Vectorised batch of rods with equal number of points, bending law, size of natural_turns, step
 /// policy and instruction set. A block contains eight rods, and one instruction moves the same
 /// point of all of them. Batches are meant for sweeps, calibration and stability maps. Lengths,
 /// stiffnesses, loads, walls, grips, initial points and step constants may differ from rod to rod.

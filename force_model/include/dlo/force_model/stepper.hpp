@@ -57,7 +57,7 @@ enum class Integration {
 /// Step settings as independent policies; the steppers above are the combinations that the paper
 /// uses.
 struct StepPolicy {
-  StepLimit limit = StepLimit::none;  ///< limit of the movement, l_s
+  StepLimit limit = StepLimit::none;  ///< movement of a step that is limited to l_s
   bool momentum = false;              ///< adds c_h times the last movement
   bool damping = false;               ///< divides by c_s once points oscillate
   bool automatic = false;             ///< overwrites c_F and c_h
