@@ -22,7 +22,8 @@ namespace dlo::cli {
 /// Returns a table of options.toml: a command, "common" or "groups".
 [[nodiscard]] const compare::Json& option_table(const std::string& name);
 
-/// Returns the words of a text of the table; each name of several options is replaced by them.
+/// Splits a text of the table into words, and replaces the name of each group of options by the
+/// names of its options.
 [[nodiscard]] std::vector<std::string> expand_option_groups(const std::string& text);
 
 /// Refuses options that end with "=", because CLI11 would take the next word as their value.

@@ -31,7 +31,7 @@ struct DampingOptions {
   std::optional<double> material, air, quadratic;  ///< see compare::RodDamping; empty if not given
 
   void add_to(Command& command);
-  /// Returns the given values; for others those of a calibrated rod, else 0.
+  /// Returns each damping constant: the given value, else that of the calibrated rod, else 0.
   [[nodiscard]] compare::RodDamping of(const compare::CalibratedRod& rod) const;
 };
 

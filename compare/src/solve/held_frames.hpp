@@ -51,8 +51,8 @@ void add_twisting_torques(const force_model::Rod& rod, const Eigen::Matrix3Xd& p
 [[nodiscard]] std::vector<Linking> linking_of(const Scene& scene,
                                               const energy_model::Equilibrium& equilibrium);
 
-/// Returns a message if a shape has other turns than the grips hold; empty if not, or if it cannot
-/// be determined.
+/// Returns a message if the number of turns of a shape differs from the number that the grips
+/// prescribe; empty if they agree, or if the turns cannot be determined.
 [[nodiscard]] std::string turns_mismatch_message(const std::vector<Linking>& parts);
 
 /// Returns a message if turns are lost between two shapes of a motion; empty if not. Held turns

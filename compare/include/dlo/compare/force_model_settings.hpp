@@ -65,7 +65,8 @@ struct Choices<Stepper> {
 struct ForceModelSettings {
   int points = 16;                     ///< N
   BendingLaw law = BendingLaw::hooke;  ///< bending law
-  /// Joint law of model chain only, instead of law hooke: joints of other programs; empty: `law`.
+  /// Joint law of another program, which only model chain supports, in place of law hooke. Empty:
+  /// `law` applies.
   std::optional<energy_model::JointLaw> joint_law = std::nullopt;
   Bookkeeping bookkeeping = Bookkeeping::consistent;   ///< end and mass convention of the polygon
   Stepper stepper = Stepper::automatic;                ///< stepper of the simulation
