@@ -8,8 +8,9 @@
 
 namespace dlo::test {
 
-/// A rod between two clamps that hold the middles of its end segments and the frame, the later one
-/// turned by `turn` about its direction from where d1 would be if the rod were straight.
+/// A rod between two clamps that hold the middles of its end segments and the frame. The later
+/// clamp is rotated by `turn` about its direction, relative to the frame of the straight rod
+/// without twist.
 struct TwistedRod {
   double length = 1;      ///< length between the clamps [m]
   double EI = 1;          ///< [N m^2]
@@ -17,7 +18,7 @@ struct TwistedRod {
   double c_c = 1e4;       ///< [N]
   int points = 20;        ///< number of points
   double distance = 0.8;  ///< distance of the clamps [m]
-  double turn = 0;        ///< [rad]
+  double turn = 0;        ///< rotation of the later clamp about its direction [rad]
 
   [[nodiscard]] double segment() const { return length / (points - 2); }
 
@@ -42,7 +43,7 @@ struct TwistedRod {
     return rod;
   }
 
-  /// An arch in the plane of x and y that is a little out of it, its ends straight [m].
+  /// Returns an arch with straight ends, near the plane of x and y [m].
   [[nodiscard]] Eigen::Matrix3Xd arch() const {
     Eigen::Matrix3Xd shape(3, points);
     const double pi = std::acos(-1);

@@ -125,7 +125,7 @@ inline double roll(const nlohmann::json& scene) {
   const nlohmann::json& grippers = scene.at("grippers");
   if (grippers.size() < 2) return 0;
   if (grippers[1].at("frame").is_null()) {
-    refuse_unless(!scene.at("plane_normal").is_null(), "clamps without frame hold no rod in space");
+    refuse_unless(!scene.at("plane_normal").is_null(), "clamps without a frame only in a plane");
     return 0;
   }
   refuse_unless(scene.at("rod").at("sections").empty(), "only rods without sections are twisted");

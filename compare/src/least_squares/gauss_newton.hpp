@@ -39,8 +39,8 @@ struct LinearFit {
 /// Variance of errors of a given correlation, estimated from the residuals of generalised least
 /// squares without priors, and its degrees of freedom.
 struct VarianceEstimate {
-  double variance = 0;  ///< [m^2]
-  double freedom = 0;
+  double variance = 0;  ///< variance of the errors [m^2]
+  double freedom = 0;   ///< degrees of freedom of the variance
 };
 [[nodiscard]] VarianceEstimate variance_under(const std::vector<ResidualSeries>& series,
                                               const ErrorCovariance& errors, Eigen::Index frames);

@@ -132,8 +132,8 @@ class Work {
     last = (after - before) / step_;
   }
 
-  double done = 0;   ///< [J]
-  double bound = 0;  ///< [J]
+  double done = 0;   ///< work by the trapezoidal rule [J]
+  double bound = 0;  ///< bound of the error of `done` [J]
 
  private:
   double step_ = 1;

@@ -39,7 +39,7 @@ struct DynamicTrack {
   /// Largest residual of the energy balance, divided by `largest_energy`, as in
   /// energy_model::Dynamics.
   double energy_error = 0;
-  double largest_energy = 0;  ///< [J]
+  double largest_energy = 0;  ///< as in energy_model::Dynamics [J]
   double step_error = 0;      ///< Dynamics::error_estimate, over the length [-]
   /// Largest depth of the rod in a rigid obstacle in reach, over the length [-]; empty if there is
   /// no such obstacle.

@@ -27,7 +27,7 @@ class FrameClock {
   FrameClock(const Scene& scene, const MotionPart& part, const TrackRates& rates);
 
   [[nodiscard]] std::size_t frames() const { return steps_ + 1; }
-  [[nodiscard]] double time(std::size_t frame) const;  ///< [s]
+  [[nodiscard]] double time(std::size_t frame) const;  ///< time of a frame [s]
   /// Returns the time of the last update of the obstacles [s].
   [[nodiscard]] double obstacle_time(std::size_t frame) const;
   /// Returns the scene at the time of a frame, with grippers and obstacles at rest.

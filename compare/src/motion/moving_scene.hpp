@@ -44,7 +44,7 @@ struct RodDamping {
 /// A default number of terms with which the integrator failed.
 struct TooFewTerms {
   int terms = 0;
-  double time = 0;  ///< time of the first frame that it did not reach [s]
+  double time = 0;  ///< time of the first frame that the integrator did not reach [s]
 };
 
 /// A simulation of a scene's rod.

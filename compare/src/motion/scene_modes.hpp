@@ -84,7 +84,7 @@ struct SceneMode {
 struct PhysicalSteps {
   double point_mass = 0;  ///< mean of the free points [kg]
   double c_F = 0;         ///< 1 / (rate^2 point_mass) [m/N]
-  double c_h = 1;         ///< [-]
+  double c_h = 1;         ///< exp(-2 zeta omega / rate) of the slowest mode [-]
   /// Steps per second below which these masses are unstable, without regard to c_s.
   double least_rate = 0;
 };

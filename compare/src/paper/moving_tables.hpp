@@ -15,7 +15,7 @@ struct PrintedMovingRow {
   long steps = 0;            ///< steps of all kinds
   long damped_steps = 0;     ///< steps with c_s != 1; 0 in Tables 3 and 4, as the text states
   long limited_steps = 0;    ///< steps with d_m > l_s
-  double average_force = 0;  ///< [N]
+  double average_force = 0;  ///< average force of the gripper [N]
 };
 
 /// Experiment with its result and its printed row.

@@ -46,7 +46,7 @@ Eigen::Matrix3Xd points_of(const TrackShapes& shapes, const std::vector<std::siz
 /// Grid of cells of equal size, each with one shape, all at the same scale.
 struct Cells {
   std::array<double, 2> least = {0, 0};  ///< coordinates at the lower left corner of a cell [m]
-  std::array<double, 2> size = {1, 1};   ///< [m]
+  std::array<double, 2> size = {1, 1};   ///< width and height of a cell [m]
   double pixels_per_metre = 1;
   int columns = 1, rows = 1;
 

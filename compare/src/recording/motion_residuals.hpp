@@ -19,8 +19,8 @@ class ModelMotion {
   /// @param frames      points [m], 3 x M each; M and the number of frames are at least four
   ModelMotion(double begin, double end, double length, std::vector<Eigen::Matrix3Xd> frames);
 
-  [[nodiscard]] double begin() const { return begin_; }  ///< [s]
-  [[nodiscard]] double end() const { return end_; }      ///< [s]
+  [[nodiscard]] double begin() const { return begin_; }  ///< time of the first frame [s]
+  [[nodiscard]] double end() const { return end_; }      ///< time of the last frame [s]
   /// Returns the rod's point at a time and an arc length [m].
   [[nodiscard]] Eigen::Vector3d at(double time, double arc_length) const;
 

@@ -137,8 +137,7 @@ Neglected neglected_twist(const Scene& scene, const Plan& plan) {
   if (scene.prescribes_twist()) {
     ForceModelSettings hooke = scene.force_model;
     hooke.law = BendingLaw::hooke;
-    return {"twist",
-            models_twist(scene, hooke) ? "chain, force with the law paper" : "chain, force",
+    return {"twist", models_twist(scene, hooke) ? "chain, force (law paper only)" : "chain, force",
             unbounded, "the grippers hold the rod's frame"};
   }
   if (!scene.has_material_directors()) {
@@ -157,10 +156,9 @@ Neglected neglected_twist(const Scene& scene, const Plan& plan) {
 Neglected neglected_natural(const Scene& scene) {
   ForceModelSettings hooke = scene.force_model;
   hooke.law = BendingLaw::hooke;
-  return {
-      "natural curvature",
-      models_natural_curvature(scene, hooke) ? "chain, force with the law paper" : "chain, force",
-      unbounded, "the rod is curved without loads"};
+  return {"natural curvature",
+          models_natural_curvature(scene, hooke) ? "chain, force (law paper only)" : "chain, force",
+          unbounded, "the rod is curved without loads"};
 }
 
 Neglected neglected_friction(const Plan& plan) {

@@ -25,9 +25,9 @@ struct StabilityMapOptions {
 
 /// Stability of one rod of the grid.
 struct MapPoint {
-  double c_c = 0;  ///< [N]
-  double c_h = 0;  ///< [-]
-  double c_F = 0;  ///< [m/N]
+  double c_c = 0;  ///< stretch stiffness of the segments [N]
+  double c_h = 0;  ///< fraction of the last movement that a step adds [-]
+  double c_F = 0;  ///< step factor: movement divided by force [m/N]
   /// `pass`: the disturbance did not grow; `oscillates`: it grew, but within bounds; else
   /// `diverges`.
   Outcome outcome = Outcome::diverges;
@@ -35,8 +35,8 @@ struct MapPoint {
 
 /// Limit of c_F for one pair of c_c and c_h.
 struct MapColumn {
-  double c_c = 0;  ///< [N]
-  double c_h = 0;  ///< [-]
+  double c_c = 0;  ///< stretch stiffness of the segments [N]
+  double c_h = 0;  ///< fraction of the last movement that a step adds [-]
   /// Bound of the largest eigenvalue at rest, see force_model::mode_bounds [N/m].
   double fastest_mode = 0;
   /// Largest stable c_F by linear stability, see force_model::largest_step_factor [m/N].

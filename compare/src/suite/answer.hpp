@@ -86,8 +86,8 @@ struct MomentBalance {
 /// Motion of a scene, computed by two methods.
 struct MotionAnswer {
   BatteryScene of;                       ///< the scene, which has a motion
-  std::vector<double> times;             ///< [s]
-  std::vector<double> arc_length;        ///< [m]
+  std::vector<double> times;             ///< times of the frames [s]
+  std::vector<double> arc_length;        ///< arc lengths of the points [m]
   std::vector<Eigen::Matrix3Xd> frames;  ///< points of the answer at each time, by `energy` [m]
   std::string second_method;             ///< name of the second method
   /// Largest distance of a point from the second method's, plus the error estimates of both [m].

@@ -37,7 +37,7 @@ double speed_share(double speed, double before, double after) {
 
 /// Great circle from one direction to the next.
 struct GreatCircle {
-  double angle = 0;  ///< [rad]
+  double angle = 0;  ///< angle between the directions [rad]
   /// Unit vector; zero if both directions are equal.
   Eigen::Vector3d axis = Eigen::Vector3d::Zero();
 };

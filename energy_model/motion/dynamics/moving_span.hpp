@@ -31,17 +31,17 @@ struct SpanRun {
   std::string message;
   bool left_plane = false;  ///< whether the motion would move a planar span out of its plane
   long steps = 0;
-  double smallest_step = std::numeric_limits<double>::infinity();  ///< [s]
-  double error = 0;                                                ///< divided by the rod length
+  double smallest_step = std::numeric_limits<double>::infinity();  ///< smallest time step [s]
+  double error = 0;  ///< error estimate of the integrator, divided by the rod length
   double depth = 0;  ///< largest depth within rigid obstacles [m]
 };
 
 /// Begin of a span's motion, and the times of its frames.
 struct SpanMotion {
-  double begin = 0;                      ///< [s]
+  double begin = 0;                      ///< start time [s]
   const StartingShape& start;            ///< shape at the begin
   const std::vector<PointMass>& masses;  ///< point masses that no other span carries
-  std::span<const double> times;         ///< [s]
+  std::span<const double> times;         ///< times of the frames [s]
 };
 
 /// Simulates a span between moving clamps.

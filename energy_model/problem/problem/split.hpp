@@ -30,7 +30,7 @@ struct PlacedSpan {
   Eigen::Matrix3d frame = Eigen::Matrix3d::Identity();  ///< rows: the span's axes in space
   std::size_t anchor_grip = 0;
   std::vector<std::size_t> hold_grips;  ///< grips of span.holds in Problem::grips
-  Eigen::Vector3d anchor_position = Eigen::Vector3d::Zero();  ///< [m]
+  Eigen::Vector3d anchor_position = Eigen::Vector3d::Zero();  ///< position of anchor_grip [m]
 
   [[nodiscard]] double s_of(double arc_length, double length) const {
     return (reversed ? start - arc_length : arc_length - start) / length;

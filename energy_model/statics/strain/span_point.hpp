@@ -15,7 +15,7 @@ namespace dlo::energy_model {
 /// the next.
 struct SpanPoint {
   Eigen::VectorXd x;
-  double energy = 0;         ///< [EI/l]
+  double energy = 0;         ///< energy at x [EI/l]
   Eigen::VectorXd gradient;  ///< gradient of the energy
   Eigen::VectorXd residual;  ///< residuals of the constraints
   Eigen::MatrixXd jacobian;  ///< derivatives of the constraints, constraints x unknowns

@@ -53,8 +53,8 @@ struct Load {
 struct LineLoad {
   double begin = 0;                                    ///< arc length [m], 0 .. length
   double end = 0;                                      ///< arc length [m], > begin
-  Eigen::Vector3d at_begin = Eigen::Vector3d::Zero();  ///< [N/m]
-  Eigen::Vector3d at_end = Eigen::Vector3d::Zero();    ///< [N/m]
+  Eigen::Vector3d at_begin = Eigen::Vector3d::Zero();  ///< force per length at `begin` [N/m]
+  Eigen::Vector3d at_end = Eigen::Vector3d::Zero();    ///< force per length at `end` [N/m]
 
   /// Returns the derivative of the force per length by arc length [N/m^2].
   [[nodiscard]] Eigen::Vector3d slope() const { return (at_end - at_begin) / (end - begin); }

@@ -49,8 +49,8 @@ inline constexpr double smallest_mode_ratio = 1e-15;
 ///     c_F = 4 / (sqrt(fastest) + sqrt(slowest))^2,
 ///     c_h = ((sqrt(fastest) - sqrt(slowest)) / (sqrt(fastest) + sqrt(slowest)))^2
 struct HeavyBall {
-  double c_F = 0;  ///< [m/N]
-  double c_h = 0;  ///< [-]
+  double c_F = 0;  ///< step factor: movement divided by force [m/N]
+  double c_h = 0;  ///< fraction of the last movement that a step adds [-]
 };
 
 /// Returns the constants for these modes. @throws std::invalid_argument unless both are > 0
