@@ -38,8 +38,8 @@ struct Registers {
   static Lanes lanes_of_rods(const PerLane& values, std::ptrdiff_t column) {
     return stride == 1 ? all_lanes(values.lane[0]) : read_lanes(values.lane + column * lane_count);
   }
-  /// Stores one number of each rod: the lanes of a single rod are combined by `combine`, and in a
-  /// batch each lane is the number of its own rod.
+  /// Stores one number of each rod. For a single rod, `combine` reduces all lanes to one number; in
+  /// a batch, each lane is the number of another rod.
   template <Lanes combine(Lanes, Lanes)>
   static void gather(Lanes a, std::ptrdiff_t column, PerLane& values) {
     if constexpr (stride == 1) {

@@ -1,4 +1,5 @@
-// Times that differ by rounding, and energies so large that their rounding is seen.
+// Tests of times that differ by rounding, and of energies whose rounding exceeds the error of a
+// step.
 
 #include <gtest/gtest.h>
 

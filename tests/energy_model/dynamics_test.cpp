@@ -404,7 +404,7 @@ TEST(Dynamics, AStepThatEndsAtABreakUsesOnlyTheMotionBefore) {
   }
 }
 
-// Made slower, a damped motion comes to the shapes at rest at first order in its speed.
+// The distance of a damped motion from the equilibria is proportional to its speed.
 TEST(Dynamics, SlowMotionComesToRestingShapes) {
   MovingRod rod = moving_cantilever(5);
   rod.material_damping = 0.05;
@@ -438,11 +438,11 @@ TEST(Dynamics, ARodThatFallsOnAFloorThatYieldsKeepsItsEnergy) {
     EXPECT_LT(std::abs(frame.obstacles[0].x()), 1e-12);
   }
   EXPECT_GT(pushed, 1);
-  // The force of a node that comes into the floor has a kink in time.
+  // The force on a node has a kink in time when the node enters the floor.
   EXPECT_LT(result.energy_error, 1e-4);
 }
 
-// The clamp in the middle: two spans, of which one runs against the arc length.
+// A clamp in the middle makes two spans; the first one has the arc length reversed.
 TEST(Dynamics, BothSidesOfAClampMoveEqually) {
   MovingRod rod = moving_cantilever(8);
   rod.problem.grips[0].at = 0.5;
@@ -478,7 +478,8 @@ TEST(Dynamics, GravityAndLoadsAreZeroWherePointsSitAtTheFirstGrip) {
   EXPECT_NEAR(frame.energy.load, -rod.problem.loads[0].force.dot(loaded - first), 1e-9);
 }
 
-// Loads that grow along the rod, on all of it and on a part: in motion they act as at rest.
+// Line loads that vary along the whole rod or a part of it have the same effect in `simulate` and
+// in `solve_energy`: a rod that starts in equilibrium stays there.
 TEST(Dynamics, VaryingLineLoadsLeaveARodAtRestWhereItIs) {
   MovingRod rod = moving_cantilever(2);
   rod.problem.line_loads = {{0, 1, {0, 0, 0}, {0, -6, 0}}, {0.3, 0.8, {0, 5, 0}, {0, -1, 0}}};
@@ -491,8 +492,8 @@ TEST(Dynamics, VaryingLineLoadsLeaveARodAtRestWhereItIs) {
   }
 }
 
-/// A clamp that shakes and turns a rod with damping, drag and a point mass over a floor, which is
-/// so long, stiff and heavy.
+/// Returns a rod of given length, bending stiffness and mass, with damping, drag and a point mass,
+/// over a floor. Its clamp oscillates and rotates.
 MovingRod shaken_rod(double length, double stiffness, double mass) {
   const double force = stiffness / (length * length);
   const double time = std::sqrt(mass * length / force);

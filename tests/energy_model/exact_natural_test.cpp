@@ -227,8 +227,8 @@ TEST(ExactNatural, ReactionsAreTheDerivativesOfTheEnergy) {
   problem.sections = {{0.5, 0.8, 2, 1.2, {0, -4, 0}}};
   problem.grips.push_back({1, {0.4, 0.1, 0.5}, Eigen::Vector3d(1, 0.2, 0.3), FrameHold{}});
   constexpr double h = 1e-4;
-  // The frame of the end is prescribed as it is at present, so that it does not rotate when the
-  // clamp moves.
+  // The end's frame is prescribed explicitly. Without a given frame it would rotate when the clamp
+  // moves.
   const Eigen::Vector3d direction = problem.grips[1].direction->normalized();
   problem.grips[1].frame = FrameHold{direction.unitOrthogonal(), 0};
   const Equilibrium held = test::converged(solve_exact(problem));

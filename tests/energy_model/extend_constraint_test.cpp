@@ -89,7 +89,7 @@ TEST(ExtendConstraint, DerivativesAreThoseOfTheResidual) {
   }
 }
 
-// The multiplier is the force that the line exerts: a load of that size leads to the same shape.
+// The multiplier is the force that the line exerts: a load of that size gives the same shape.
 TEST(ExtendConstraint, MultiplierIsTheForceOfTheLine) {
   Problem problem = test::heavy_cantilever(5, 20);
   const PlacedSpan placed = split(problem).front();

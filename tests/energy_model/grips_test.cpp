@@ -145,8 +145,8 @@ TEST(TwoClamps, AtOnePlaceConvergeOrSayWhyNot) {
 }
 
 TEST(SlackRope, HangsAsACatenary) {
-  // y = a cosh(x/a) with 2 a sinh(b/(2a)) = 1, b = 0.6; stiffness rounds the clamps within
-  // Gamma^(-1/2) = 1e-3
+  // Catenary y = a cosh(x/a) with 2 a sinh(b/(2a)) = 1 and b = 0.6. Near the clamps the rod bends
+  // within Gamma^(-1/2) = 1e-3.
   double a = 0.1;
   for (int i = 0; i < 100; ++i) {
     a -= (2 * a * std::sinh(0.3 / a) - 1) / (2 * std::sinh(0.3 / a) - 0.6 / a * std::cosh(0.3 / a));

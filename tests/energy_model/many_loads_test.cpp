@@ -1,4 +1,5 @@
-// Many point loads: as their distributed limit, and refused before they take the memory.
+// Tests of many point loads: they approach a distributed load, and too many are refused before
+// memory is allocated for them.
 
 #include <gtest/gtest.h>
 

@@ -231,7 +231,7 @@ TEST(NaturalRod, HasTheSameDirectorsInBothModels) {
 }
 
 TEST(NaturalRod, BehindItsFirstClampIsTheSameRod) {
-  // A rod clamped in its middle, and the half of it that lies before, as a rod of its own.
+  // A rod that is clamped in its middle is compared with a separate rod that equals its first half.
   Problem whole = clamped_rod();
   whole.weight_per_length = {0, -5, 2};
   whole.natural_strains = {{1, 2, 0.5}, {0.5, -1, 1}};

@@ -33,7 +33,8 @@ PolygonProblem between_clamps(JointLaw law, Eigen::Index points, double span, do
   return problem;
 }
 
-/// Half a sine with the slack of the polygon, turned about the line of the grips.
+/// Returns half a sine with the slack of the polygon, rotated about the line of the grips.
+/// @param turned  angle [rad]
 Eigen::Matrix3Xd arch(const PolygonProblem& problem, double span, double turned) {
   const Eigen::Index n = problem.node_forces.cols();
   const double height = 2 / std::numbers::pi * std::sqrt(span * (1 - span));

@@ -1,10 +1,10 @@
-// Random rods over floors and beside walls, and on cylinders, balls and capsules that are put into
-// their way, as a table of what is certified and what it takes.
+// Solves random rods over floors, beside walls, and on cylinders, balls and capsules. Prints a
+// table of the certified results and of the processor time.
 //   dlo_random_contacts [--scenes N] [--frames N] [--first K] [--time-limit SECONDS]
-// N scenes of each kind, as many as --frames says of those between clamps that hold frames;
-// processor time. What is certified of the latter starts a polygon at rest, which must not leave it
-// for less energy. Ends with 0 if none did and no solve overran the limit; 1 if not; 2 for bad
-// usage.
+// --scenes is the number of scenes of each kind, --frames that of rods between clamps that hold
+// frames. From each certified shape of the latter a polygon is relaxed; it must not find another
+// shape with less energy. Exit status: 0 if none did and no solve exceeded the limit, 1 if not, 2
+// for bad usage.
 
 #include <algorithm>
 #include <cstdio>
@@ -59,8 +59,8 @@ Options read_options(int argc, char** argv) {
   return options;
 }
 
-/// Whether the polygon that begins as a shape comes to rest elsewhere, with less energy: then that
-/// is no minimum.
+/// Whether a polygon that is relaxed from a shape comes to rest in another shape with less energy.
+/// The given shape is then no minimum.
 bool polygon_finds_lower_minimum(const Problem& problem, const Equilibrium& shape) {
   constexpr Eigen::Index segments = 96;
   constexpr double least_movement = 0.05;  // in l; polygons of 96 segments are off by less

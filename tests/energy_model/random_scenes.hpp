@@ -20,7 +20,7 @@ namespace dlo::test {
 /// Comparison of two solutions of one problem.
 enum class Agreement {
   same,         ///< equal points to 1e-8 l everywhere
-  image,        ///< the same curvature and energy: a mirror image, or turned about a free axis
+  image,        ///< the same curvature and energy: a mirror image, or rotated about a free axis
   both_stable,  ///< two different equilibria, each proven stable
   contradict,   ///< none of these
   missing       ///< one of them at least did not converge

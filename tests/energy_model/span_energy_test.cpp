@@ -112,7 +112,8 @@ Span free_natural_span(bool planar) {
   return span;
 }
 
-/// A strip: three stiffnesses, in space about axes of its own, another three in its section.
+/// Returns a strip with three different stiffnesses and a section with three others; in space its
+/// principal axes differ from those of the span.
 Span strip_span(bool planar) {
   Span span = natural_span(planar);
   span.stiffness = {1, 3, 0.7};

@@ -1,4 +1,4 @@
-// Rods that stretch by N / EA: closed forms, and an integration of its own.
+// Tests of rods that stretch by N / EA against closed forms and an independent integration.
 
 #include <gtest/gtest.h>
 

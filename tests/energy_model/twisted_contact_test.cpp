@@ -22,7 +22,7 @@
 namespace dlo::energy_model {
 namespace {
 
-/// Two clamps that face each other, 0.7 l apart, the second turned by `roll`.
+/// Returns a rod between two clamps on one line, 0.7 l apart; the second is rotated by `roll`.
 Problem framed_rod(double gamma, double roll) {
   return test::framed_clamps(gamma, 0.7, 0.75, roll);
 }

@@ -1,5 +1,6 @@
-// d1 of the material of a round straight rod that clamps twist: where the clamps hold it, across
-// the tangent, and turned evenly against a frame that is carried along the shape without twist.
+// Tests of the material director d1 of a round straight rod that clamps twist: it agrees with the
+// clamps, is perpendicular to the tangent, and rotates at a constant rate relative to a frame that
+// is transported without twist.
 
 #include <gtest/gtest.h>
 

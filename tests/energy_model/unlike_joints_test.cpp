@@ -1,4 +1,4 @@
-// Chains and polygons whose joints are of unlike stiffness, or turned at rest.
+// Tests of chains and polygons whose joints have different stiffnesses or rest angles.
 
 #include <gtest/gtest.h>
 

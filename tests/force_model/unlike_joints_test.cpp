@@ -1,4 +1,4 @@
-// Joints of unlike stiffness, and joints that are turned at rest.
+// Tests of joints with different stiffnesses, and of joints with rest angles.
 
 #include <gtest/gtest.h>
 
@@ -164,7 +164,7 @@ TEST(NaturalTurns, TheStiffnessIsTheForcesDerivativeInThePlane) {
 }
 
 TEST(NaturalTurns, TheFastestModeIsBounded) {
-  // Twice the inverse of the bound is a stable step however the joints are turned at rest.
+  // Twice the inverse of the bound is a stable step for any rest angles of the joints.
   SteelRod steel;
   Rod rod = steel.rod({BendingLaw::hooke, steel.EI}, 66);
   rod.bending.natural_turns = Eigen::VectorXd::Constant(steel.points - 2, 2.5);

@@ -140,8 +140,9 @@ struct PerformanceRequirement {
   std::function<double()> measure;
 };
 
-/// The promises for these registers. Ratios to plain Eigen code, which uses two of a register's
-/// numbers at any width, grow with it; promised is what holds for AVX2 and what is wider.
+/// Returns the promised speeds for an instruction set. Plain Eigen code uses two numbers of a
+/// register of any width, so ratios to it grow with the width. The promises for wide registers hold
+/// for AVX2 and AVX-512.
 std::vector<PerformanceRequirement> requirements(InstructionSet set) {
   const bool wide = set != InstructionSet::baseline;
   const Work plain_16 = plain_step(16);

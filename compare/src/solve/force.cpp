@@ -27,8 +27,8 @@
 namespace dlo::compare {
 namespace {
 
-/// Fraction of the displacement from the start to the chain's shape at which a simulation starts
-/// close enough not to swing past that shape.
+/// Fraction of the displacement from the start to the chain's shape at which a simulation starts.
+/// It is then close enough not to move beyond that shape.
 constexpr double start_fraction = 0.9;
 
 /// Initial state of a simulation, and the shape at which it should come to rest.
@@ -38,12 +38,12 @@ struct SimulationStart {
   std::optional<Eigen::Matrix3Xd> rest;  // shape of the chain, if there are several starts
 };
 
-/// Returns the start of a simulation. Of several starts it is the one from which the chain is
-/// lowest, because the two models are to be compared in the same equilibrium. The start is moved by
-/// a thousandth of the displacement to the chain's shape: starts are as symmetric as their scene
-/// and may lead to a saddle, at which a simulation would stay. A rod that clamps twist starts near
-/// the chain's shape, which was reached by small steps of twist; the whole twist at once could lead
-/// to another equilibrium.
+/// Returns the start of a simulation. Of several starts it is the one from which the chain has the
+/// lowest energy, because the two models are to be compared in the same equilibrium. The start is
+/// moved by a thousandth of the displacement to the chain's shape: a start has the symmetry of its
+/// scene, so that a simulation could stay at a saddle. A rod that clamps twist starts near the
+/// chain's shape, which was found by small steps of twist; with the whole twist at once the
+/// simulation could converge to another equilibrium.
 SimulationStart simulation_start(const Scene& scene, const ForceModelSettings& settings,
                                  const Discretisation& discretisation,
                                  const SolveOptions& options) {

@@ -62,7 +62,7 @@ TEST(SceneModes, WhatHangsOnTheRodMovesWithIt) {
   EXPECT_NEAR(*found.modes[0].polygon_omega / omega, 1, 3e-3);
 }
 
-/// A polygon with segments so soft that steps are few, which swings in its slowest mode.
+/// A polygon that oscillates in its slowest mode. Its segments are so soft that few steps suffice.
 struct Swing {
   MovingPolygon polygon;
   double stiffness = 0;

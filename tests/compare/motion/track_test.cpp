@@ -40,8 +40,8 @@ Scene swung() {
       "swung.toml");
 }
 
-/// Returns a rod that comes to rest on a peg, from which its clamp pulls it until its tip falls
-/// off.
+/// Returns a scene in which a rod touches a peg and its clamp moves away until the tip slides off
+/// the peg.
 Scene rod_pulled_off_peg() {
   return parse_scene(
       "[rod]\nlength = 1\nbending_stiffness = 1\nmass_per_length = 1\n[[gripper]]\nat = 0\n"
@@ -225,8 +225,8 @@ TEST(Track, TellsASnapByTheEnergyThatIsMissing) {
   }
 }
 
-/// An S-shaped rod between two clamps, one of which rotates until the rod has turned over, out of
-/// its plane.
+/// Returns an S-shaped rod between two clamps. One clamp rotates until the rod has changed to its
+/// mirror image, through shapes out of its plane.
 Scene rod_with_reversed_clamp() {
   return parse_scene(
       "[rod]\nlength = 1\nbending_stiffness = 1\nmass_per_length = 0\n[[gripper]]\nat = 0\n"

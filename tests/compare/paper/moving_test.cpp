@@ -24,18 +24,19 @@ TEST(MovingExperiment, AtRestTheGripperCarriesTheWeight) {
     ASSERT_EQ(held.status, MovingStatus::finished);
     EXPECT_NEAR(held.final_net_force, 10 * weight_of_a_point, 1e-9);
     if (horizontal) continue;
-    // The two points above the gripper of a hanging rod stand on it. As the cubic law has no
-    // stiffness when straight they lean until c_b angle^2 is of the order of the weight, which
-    // rotates the springs' forces by angles of that order.
+    // The gripper of a hanging rod carries the two points above it from below. The cubic law has no
+    // stiffness when straight, so these points lean until c_b angle^2 is of the order of the
+    // weight. This rotates the springs' forces by angles of that order.
     const double angle_squared = 4 * weight_of_a_point / 3776.21457;
     EXPECT_NEAR(held.final_force / held.final_net_force, 1, 2 * angle_squared);
   }
 }
 
-// Levers: P_i at i L, f_2 + f_3 = 10 w, 2 f_2 + 3 f_3 = 45 w, so f_2 = -15 w and f_3 = 25 w.
+// Balance of forces and moments with P_i at i L: f_2 + f_3 = 10 w and 2 f_2 + 3 f_3 = 45 w, so
+// f_2 = -15 w and f_3 = 25 w.
 TEST(MovingExperiment, SpringsOfAHorizontalRodPullAgainstEachOther) {
   const MovingRun held = run(Movement::rotation, true, MovingVariant::dynamic, {.angle = 0});
-  // The sagging rod's levers are shorter: by 1 - cos of a few degrees, below 2 %.
+  // The rod sags by a few degrees, which shortens the lever arms by less than 2 %.
   EXPECT_LT(held.final_force, 40 * weight_of_a_point);
   EXPECT_GT(held.final_force, 0.98 * 40 * weight_of_a_point);
 }

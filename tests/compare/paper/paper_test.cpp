@@ -33,7 +33,7 @@ TEST(PaperTables, ComeOutToAllPrintedDigits) {
     EXPECT_TRUE(row(rows, table, quantity).agrees) << table << " " << quantity;
   }
   EXPECT_TRUE(row(rows, "1", "c_e (grav)").agrees);
-  EXPECT_FALSE(row(rows, "5", "c_e (grav)").agrees);  // it is Table 1's
+  EXPECT_FALSE(row(rows, "5", "c_e (grav)").agrees);  // the printed value is that of Table 1
 }
 
 TEST(PaperReport, MeasuresTheEffectiveModulusAtRestAndOnTheWay) {

@@ -1,5 +1,5 @@
-// Tests of scenes made in code: they equal the scene of a file with the same fields, and are
-// refused likewise.
+// Tests of scenes made in code: they equal the scene of a file with the same fields, and invalid
+// ones are refused with the same message.
 
 #include <gtest/gtest.h>
 

@@ -123,8 +123,8 @@ TEST_F(Command, SolveWritesVtkThatCheckReadsBack) {
   succeeds("solve " + steel() + " --format vtk -o " + file);
   const auto check = json_of("check " + steel() + " --shape " + file);
   EXPECT_EQ(check.at("arc_lengths"), "file");
-  // check compares with the state that it finds from a start of its own; the energy model's last
-  // step is 1e-11 l at most.
+  // `check` solves the scene again from another start; the last step of the energy model is at most
+  // 1e-11 l.
   EXPECT_LT(check.at("deviation").at("max_m").get<double>(), 1e-11);
 }
 

@@ -14,7 +14,7 @@ namespace {
 
 using std::numbers::pi;
 
-/// A rod without weight between two clamps on one line, the second turned.
+/// Returns a rod without weight between two clamps on one line, of which the second one is rotated.
 Scene twisted_scene(double apart, double turns) {
   Scene scene;
   scene.name = "twisted";

@@ -20,7 +20,7 @@ namespace {
 
 using std::numbers::pi;
 
-/// A rod in space between two clamps, the later one turned by `roll`.
+/// Returns a rod in space between two clamps, of which the later one is rotated by `roll`.
 Scene spatial_scene(double roll) {
   Scene scene = heavy_scene(10, 0);
   scene.torsional_stiffness = scene.bending_stiffness() / 1.3;

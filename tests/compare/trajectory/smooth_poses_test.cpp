@@ -12,7 +12,7 @@
 namespace dlo::compare {
 namespace {
 
-/// Poses whose x, direction and roll swing, from -5 s to 5 s.
+/// Returns poses from -5 s to 5 s whose x, direction and roll oscillate.
 std::vector<Pose> swinging(double frequency, double rate) {
   std::vector<Pose> poses;
   for (int k = 0; k <= 10 * static_cast<int>(rate); ++k) {
