@@ -56,7 +56,7 @@ constexpr double tolerated_failures = 0.01;  // share of right files that may fa
 constexpr std::array kinds = {"one clamp",     "between grips", "rigid body",
                               "yielding body", "twisted",       "stretch"};
 
-/// A random rod of this kind, of unit length and stiffness.
+/// Returns a random rod of this kind, of unit length and stiffness.
 Problem problem_of(std::uint64_t number, RandomNumbers& random) {
   const std::string kind = kinds[number % kinds.size()];
   const RandomSpace space = random.chance(0.5) ? RandomSpace::plane : RandomSpace::space;
@@ -112,7 +112,7 @@ Scene scene_of(std::uint64_t number, RandomNumbers& random) {
   return scene;
 }
 
-/// The stable equilibria that a search finds, certified.
+/// Returns the stable equilibria that a search finds, certified.
 std::vector<Equilibrium> stable_states(const Scene& scene) {
   if (scene.stretch == Stretch::counted) {
     return {solve_reference(scene, Model::exact, {.time_limit = time_limit})};
@@ -135,7 +135,7 @@ double nearest(const Points& from, const Points& to) {
   return rms_of(distances);
 }
 
-/// Points along a polyline at so many equal distances.
+/// Returns `count` points at equal distances along a polyline.
 Points refined(const Points& points, int count) {
   Shape shape{{0}, points};
   for (Eigen::Index i = 1; i < points.cols(); ++i) {

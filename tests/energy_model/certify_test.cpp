@@ -66,7 +66,7 @@ TEST(Certify, UsesTheFactorAtTheShapeItself) {
   }
 }
 
-/// The straight shape of a rod that is clamped at its begin, before it is certified.
+/// Returns the straight shape of a rod that is clamped at its begin, before it is certified.
 SpanSolution straight_shape(const Span& span) {
   SpanSolution solution;
   solution.status = SolveStatus::converged;
@@ -77,7 +77,8 @@ SpanSolution straight_shape(const Span& span) {
   return solution;
 }
 
-/// A clamped vertical rod close to self-buckling, whose smallest eigenvalue is about a hundredth.
+/// Returns a clamped vertical rod close to self-buckling, whose smallest eigenvalue is about a
+/// hundredth.
 Span nearly_buckling() {
   Span span;
   span.length = 1;
@@ -190,7 +191,7 @@ TEST(Certify, ClaimsNoMoreThanTheSearch) {
   EXPECT_EQ(saddle.status, SolveStatus::converged);
 }
 
-/// A straight rod without weight, clamped at its begin.
+/// Returns a straight rod without weight, clamped at its begin.
 SpanSolution straight_through(const obstacle::Body& body, double stiffness) {
   Span span;
   span.length = 1;

@@ -228,7 +228,8 @@ TEST(Contact, APointIsReleasedByAnObstacleThatMovesAway) {
   }
 }
 
-/// A straight rod along a level floor, so deep below its top, in lengths.
+/// Judges a straight rod along a level floor. @param depth  depth of the rod in the floor, in
+/// lengths
 Equilibrium judge_rod_below_floor(double length, double depth) {
   Problem problem = heavy_cantilever(1, 0);
   problem.length = length;

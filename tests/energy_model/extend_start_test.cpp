@@ -17,8 +17,8 @@ namespace dlo::energy_model {
 namespace {
 
 // [page]
-/// A helix of whole turns around the chord to the last grip, as long as the span: a start for
-/// clamps that are nearer than the rod is long. Only tangents count, unit and by growing s.
+/// Returns a helix of whole turns around the chord to the last grip, as long as the span: a start
+/// for clamps that are nearer than the rod is long. Only tangents count, unit and by growing s.
 TangentField helix_field(const Span& span, double turns) {
   const Eigen::Vector3d chord = span.holds.back().offset;
   const Eigen::Vector3d axis = chord.normalized();

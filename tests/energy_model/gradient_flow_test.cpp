@@ -15,7 +15,7 @@
 namespace dlo::energy_model {
 namespace {
 
-/// A heavy rod of unit length and stiffness, clamped at both ends, the second one rolled.
+/// Returns a heavy rod of unit length and stiffness, clamped at both ends, the second one rolled.
 Problem rolled(const Eigen::Vector3d& end, const Eigen::Vector3d& direction, double weight,
                double c, double roll) {
   Problem problem = test::rolled_clamps(end, direction, c, roll);

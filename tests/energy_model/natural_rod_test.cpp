@@ -251,7 +251,8 @@ TEST(NaturalRod, BehindItsFirstClampIsTheSameRod) {
   EXPECT_LT((point_at(one, 0.5) - point_at(both, 0)).norm(), 1e-9);
 }
 
-/// A straight shaft and two arcs, the second back to its direction.
+/// Returns a rod whose stress-free shape is a straight shaft and two arcs; the second arc ends in
+/// the direction of the shaft.
 Problem guide_wire() {
   Problem problem = clamped_rod();
   problem.natural_strains = {Vector3d::Zero()};

@@ -13,8 +13,8 @@
 namespace dlo::energy_model {
 namespace {
 
-/// The quaternion at the end of one piece of length 1 with these strains more than those of x, by
-/// Runge-Kutta's fourth-order method.
+/// Returns the quaternion at the end of one element of length 1, by Runge-Kutta's fourth-order
+/// method. The strains are those of x plus `natural`.
 /// @param x  coefficients of two fields or of three
 Eigen::Quaterniond integrated(const Eigen::VectorXd& x, int fields, int steps,
                               const Eigen::Vector3d& natural) {

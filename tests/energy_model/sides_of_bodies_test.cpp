@@ -50,7 +50,7 @@ const Equilibrium* find_stable(const std::vector<Equilibrium>& list, const Equil
   return found == list.end() ? nullptr : &*found;
 }
 
-/// A rope from a pin to the left of a peg, with a load at its end.
+/// Returns a rope from a pin to the left of a peg, with a load at its end.
 Problem rope_beside_peg() {
   Problem problem = heavy_cantilever(4e3, 0);
   problem.grips = {{0, {-0.4, 0.07, 0}}};
@@ -59,7 +59,7 @@ Problem rope_beside_peg() {
   return problem;
 }
 
-/// A strip-like rod above two circles that yield, the weight presses it on both of them.
+/// Returns a rod above two compliant cylinders; its weight presses it onto both.
 Problem rod_above_yielding_circles() {
   Problem problem = heavy_cantilever(200, 10);
   problem.obstacles = {{Body::cylinder({0.3, -0.08, 0}, {0, 0, 1}, 0.06), 2e5},
@@ -67,7 +67,7 @@ Problem rod_above_yielding_circles() {
   return problem;
 }
 
-/// A block across the way of a rod that rises from its clamp.
+/// Returns a rod that rises from its clamp, with a block in its way.
 Problem with_block_in_the_way(int seed) {
   std::mt19937 random(static_cast<unsigned>(seed));
   const auto uniform = [&](double low, double high) {

@@ -31,7 +31,8 @@ void* malloc(std::size_t size) {
 namespace dlo::energy_model {
 namespace {
 
-/// Two clamps and a pin between them, weight and loads; soft enough for layers at the clamps.
+/// Returns a span with two clamps, a pin between them, weight and loads. It is so soft that it has
+/// bending layers at the clamps.
 Span gripped_span(bool planar) {
   const double z = planar ? 0 : 1;
   Span span;

@@ -43,8 +43,9 @@ TEST(Stretch, OfARodThatHangsIsTheIntegralOfItsTension) {
   EXPECT_NEAR(solved.grips[0].force.y(), 7.5, 1e-11);
 }
 
-/// An end of a line without EI, unstretched length 1, w = `w` along -y, that is pulled at its begin
-/// by (-H, -V): x = H s/EA + H/w (asinh((V + w s)/H) - asinh(V/H)), y likewise (Irvine, ch. 1).
+/// Returns the end of a line without EI, of unstretched length 1 and weight w per length along -y,
+/// that is pulled at its begin by (-H, -V). x = H s/EA + H/w (asinh((V + w s)/H) - asinh(V/H)), and
+/// y has a similar formula (Irvine, ch. 1).
 Vector3d end_of_elastic_catenary(double H, double V, double w, double EA) {
   return {H / EA + H / w * (std::asinh((V + w) / H) - std::asinh(V / H)),
           (V + w / 2) / EA + (std::hypot(H, V + w) - std::hypot(H, V)) / w, 0};

@@ -28,7 +28,7 @@ std::vector<RodSection> sections() {
   return {{1.3, 0, {0.2, -3, 0.1}}, {0.8, 0.6, {0, -2, 0}}, {1, 0.5, {0, -2, 1}, 2.5}};
 }
 
-/// A random cross-section near a point.
+/// Returns a random cross-section near a point.
 RodState random_state(std::mt19937& random) {
   std::uniform_real_distribution<double> unit(-1, 1);
   const auto vector = [&] { return Eigen::Vector3d(unit(random), unit(random), unit(random)); };

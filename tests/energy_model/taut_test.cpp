@@ -16,7 +16,8 @@
 namespace dlo::energy_model {
 namespace {
 
-/// A clamp at an angle to the chord, and a clamp or a pin at the other end, `slack` nearer than l.
+/// Returns a rod with a clamp at an angle to the chord, and a clamp or a pin at the other end. The
+/// distance of the grips is l minus `slack`.
 Problem rod_with_slack(double slack, double first, double last, bool pinned) {
   Problem problem;
   problem.length = 1;

@@ -204,7 +204,7 @@ TEST(Turns, OfALoopAreTheSameOnEitherSide) {
   }
 }
 
-/// A random rod that is intrinsically curved, between clamps whose frames are given.
+/// Returns a random rod that is intrinsically curved, between clamps whose frames are given.
 Problem curved_rod(std::mt19937& random) {
   std::normal_distribution<double> normal;
   const auto any = [&] { return Vector3d(normal(random), normal(random), normal(random)); };

@@ -85,7 +85,7 @@ TEST(Vibrations, OfAHardlyBuckledRodAreThoseOfAPressedBeam) {
   }
 }
 
-/// A rod of length 1 that two clamps hold straight along a direction.
+/// Returns a rod of length 1 that two clamps hold straight along a direction.
 Problem taut_rod(const Vector3d& along) {
   return unit_rod(Vector3d::Zero(),
                   {clamped(0, {1, 2, 3}, along), clamped(1, Vector3d(1, 2, 3) + along, along)});

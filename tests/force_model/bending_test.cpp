@@ -22,7 +22,7 @@ Eigen::Matrix3Xd forces_of(const Eigen::Matrix3Xd& points, const Eigen::VectorXd
   return forces;
 }
 
-/// Two segments of length L in the plane that turn by alpha.
+/// Returns the points of two segments of length L in the plane with the angle alpha between them.
 Eigen::Matrix3Xd one_joint(double L, double alpha) {
   Eigen::Matrix3Xd points = Eigen::Matrix3Xd::Zero(3, 3);
   points.col(0) << -L, 0, 0;

@@ -18,8 +18,8 @@ struct FloorStart {
   Eigen::Matrix3Xd points;
 };
 
-/// A metre of the paper's spring steel between two clamps that hold the middle of its end segments,
-/// one on the floor and one above it, Gamma = 30. The floor is as stiff as a segment.
+/// Returns a metre of the paper's spring steel between two clamps that hold the middle of its end
+/// segments, one on the floor and one above it, Gamma = 30. The floor is as stiff as a segment.
 /// @param height  of the second clamp [m]
 Rod rod_over_floor(Eigen::Index points, double height) {
   const test::SteelRod steel;

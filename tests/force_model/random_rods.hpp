@@ -27,7 +27,7 @@ enum class Space { plane, full };
 
 using Variant = std::tuple<BendingLaw, Stepper, GripHold, Walls, Space>;
 
-/// A rod with forces of the order of 1 N, so that forces can be compared with 1 N.
+/// Returns a rod with forces of the order of 1 N, so that forces can be compared with 1 N.
 inline Rod random_rod(unsigned seed, Eigen::Index points, const Variant& variant) {
   const auto& [law, stepper, hold, walls, space] = variant;
   std::mt19937 engine(seed);

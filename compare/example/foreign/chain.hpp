@@ -33,7 +33,7 @@ inline Quaternion product(const Quaternion& a, const Quaternion& b) {
 }
 inline Quaternion inverse(const Quaternion& a) { return {a[0], -a[1], -a[2], -a[3]}; }
 
-/// The shortest turn that takes direction a to direction b, which are not opposite.
+/// Returns the shortest rotation from direction a to direction b, which are not opposite.
 inline Quaternion shortest_turn(const Vector& a, const Vector& b) {
   const double scale = length(a) * length(b);
   const Vector cross = {a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2],
@@ -133,7 +133,8 @@ inline double roll(const nlohmann::json& scene) {
          grippers[0].at("frame").at("roll_rad").get<double>();
 }
 
-/// The frames that do not twist along the points, and then the roll spread evenly.
+/// Returns frames along the points: transported without twist, and then rotated about the tangent
+/// by an angle that grows evenly to the roll.
 inline std::vector<Quaternion> frames(const std::vector<Vector>& points, const Vector& direction,
                                       double roll) {
   std::vector<Quaternion> result;

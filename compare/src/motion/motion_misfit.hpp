@@ -32,7 +32,7 @@ class MotionMisfit {
                std::vector<MotionParameter> fitted, const RodDamping& known,
                const SolveOptions& solve, Stages stages = {});
 
-  /// Restricts the recordings to so many seconds from their first time.
+  /// Restricts each recording to its first `seconds` seconds.
   void restrict_to(double seconds);
   /// Returns the largest duration of a recording [s].
   [[nodiscard]] double duration() const { return duration_; }

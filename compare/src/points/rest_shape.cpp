@@ -146,7 +146,7 @@ void update_arc_lengths(ArcTarget& target, const Arcs& arcs) {
   }
 }
 
-/// Returns the number of parameters of so many arcs and their pose.
+/// Returns the number of parameters of a number of arcs and their pose.
 Index arc_parameters(const ArcTarget& target, std::size_t arcs) {
   const auto n = static_cast<Index>(arcs);
   return (target.planar ? 3 : 6) + target.numbers() * n + n - 1;

@@ -62,7 +62,7 @@ TEST(CalibratedRod, RefusesWhatItCannotReplace) {
 
 class CalibratedCommand : public dlo::test::Command {
  protected:
-  /// A scene's file.
+  /// Writes a scene file and returns its path.
   std::string wire(const std::string& name, const std::string& EI, const std::string& rod,
                    double direction) {
     return write(

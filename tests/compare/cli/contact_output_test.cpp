@@ -18,7 +18,7 @@ using nlohmann::json;
 
 class ContactCommand : public dlo::test::Command {
  protected:
-  /// A cable on a floor; a second floor is out of reach.
+  /// Writes the scene of a cable on a floor; a second floor is out of reach. Returns its path.
   std::string lying() {
     return write("lying.toml",
                  "[rod]\nlength = 0.6\ndiameter = \"4 mm\"\nmaterial = \"silicone\"\n"

@@ -26,7 +26,7 @@ using dlo::test::has_all;
 using dlo::test::Outcome;
 using nlohmann::json;
 
-/// The optional paragraphs of a scene file, without the # of their lines.
+/// Returns the optional paragraphs of a scene file, without the # of their lines.
 std::vector<std::string> optional_paragraphs(const std::string& text) {
   std::vector<std::string> paragraphs;
   std::istringstream lines(text);

@@ -35,8 +35,8 @@ const std::string held_at_both_ends =
     "name = \"both ends\"\n" + dlo::test::steel_rod + dlo::test::level_clamp +
     "[[gripper]]\nat = \"50 cm\"\nposition = [0.45, 0, 0]\ndirection = \"0 deg\"\n";
 
-/// The first word of an output that is NaN, infinite or -0, or that only a programmer of dlo knows;
-/// empty: none.
+/// Returns the first word of an output that is NaN, infinite or -0, or that only a programmer of
+/// dlo understands; empty if there is none.
 std::string first_invalid_word(const std::string& text) {
   static const std::regex wrong(
       "Problem:|solve_(?:energy|exact|polygon)|"

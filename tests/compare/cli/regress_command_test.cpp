@@ -32,7 +32,7 @@ class RegressCommand : public dlo::test::Command {
     std::ofstream(path("b.toml")) << text;
   }
 
-  /// The value of an XPath expression on the JUnit file, by libxml2's reader.
+  /// Returns the value of an XPath expression on the JUnit file, by libxml2's reader.
   [[nodiscard]] std::string junit(const std::string& expression) const {
     const std::string line =
         "xmllint --xpath '" + expression + "' " + path("j.xml") + " >" + path("value") + " 2>&1";

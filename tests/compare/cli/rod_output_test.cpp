@@ -20,7 +20,7 @@ class RodCommand : public dlo::test::Command {
  protected:
   static std::string hose() { return std::string(DLO_DATA) + "/scenes/spring_hose.toml"; }
 
-  /// A rod that is given by EI and mass per length.
+  /// Returns a rod that is given by EI and mass per length.
   std::string by_stiffness(const std::string& EI) {
     return write("rod.toml",
                  "[rod]\nlength = 1\nmass_per_length = \"45 g/m\"\nbending_stiffness = " + EI +

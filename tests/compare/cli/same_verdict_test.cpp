@@ -17,7 +17,7 @@ namespace {
 using compare::Scene;
 using compare::Shape;
 
-/// A shape that is right, or wrong in one of four ways.
+/// Returns a shape that is right, or wrong in one of four ways.
 Shape shape_of_kind(Scene scene, int kind, std::mt19937& random) {
   std::normal_distribution<double> normal;
   scene.force_model.points = 21;

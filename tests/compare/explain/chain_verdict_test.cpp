@@ -24,7 +24,7 @@ namespace {
 using Eigen::Matrix3Xd;
 using Eigen::Vector3d;
 
-/// Returns the lengths of so many equal segments of a metre.
+/// Returns the lengths of equal segments of a rod of 1 m.
 std::vector<double> equal_segments(int segments) {
   return std::vector<double>(static_cast<std::size_t>(segments), 1.0 / segments);
 }

@@ -23,7 +23,8 @@ using Eigen::Matrix3d;
 using Eigen::Matrix3Xd;
 using Eigen::Vector3d;
 
-/// A cantilever in the plane, one out of it, and a rod between two grippers.
+/// Returns one of three scenes: a cantilever in the plane, one out of it, and a rod between two
+/// grippers.
 Scene scene_of(int kind) {
   const std::string rod = "[rod]\nlength = 0.9\nbending_stiffness = 1\nmass_per_length = 0.5\n";
   const std::string load = "[[load]]\nat = 0.9\nforce = [0, 0, 1.5]\n";

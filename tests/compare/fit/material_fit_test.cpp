@@ -26,7 +26,7 @@ MeasuredShape noisy_shape(const Scene& scene, const std::vector<double>& s, std:
   return {"seen", with_noise(exact_shape(scene, s).points, noise, random), {}};
 }
 
-/// Half the width of the interval of E, divided by the true E.
+/// Returns half the width of the interval of E, divided by the true E.
 double half_width(const MaterialFit& fit) {
   return (*fit.youngs_modulus.high - *fit.youngs_modulus.low) / 2 / 210e9;
 }

@@ -31,7 +31,7 @@ Shape exact_shape(const std::vector<double>& s) {
   return dlo::compare::solve(bent(), dlo::compare::Model::exact, {}, s).shape;
 }
 
-/// The exact shape at uneven arc lengths.
+/// Returns the exact shape at uneven arc lengths.
 Shape sparse_shape() { return exact_shape({0, 0.1, 0.35, 0.8, 1}); }
 
 /// Returns the exact shape with enough points to determine the whole rod.

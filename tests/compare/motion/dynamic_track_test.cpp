@@ -135,7 +135,7 @@ TEST(DynamicTrack, RefusesARodWithoutMass) {
                       {"refused.toml: --dynamic: ", "no mass", "allowed"}));
 }
 
-/// A round rod that its clamp moves in a medium at rest.
+/// Returns a round rod that its clamp moves in a medium at rest.
 Scene moved_in_water(const std::string& drags) {
   return parse_scene(
       "[rod]\nlength = \"40 cm\"\ndiameter = \"4 mm\"\nbending_stiffness = 0.01\n"

@@ -30,7 +30,7 @@ Scene corner() { return load_scene(std::string(DLO_DATA) + "/scenes/corner_routi
 const std::string light_wire =
     "[rod]\nlength = 1\nbending_stiffness = 1\nmass_per_length = 0.5\n[[gripper]]\nat = 0\n";
 
-/// A clamp that rises and turns down.
+/// Returns a scene whose clamp rises and rotates downwards.
 Scene swung() {
   return parse_scene(
       light_wire +

@@ -39,7 +39,7 @@ PlottedCurve titled(const Panel& panel, const std::string& title) {
   return {};
 }
 
-/// A rod that lies on a table, as a cable does: as flat as a scene is.
+/// Returns a rod that lies on a table, so that its height is negligible.
 Scene flat_scene() {
   Scene scene = test::heavy_scene(20, 0);
   const Eigen::Vector3d under(0, -0.04 * scene.length, 0);

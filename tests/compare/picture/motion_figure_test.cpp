@@ -17,7 +17,7 @@
 namespace dlo::compare {
 namespace {
 
-/// A rod between two clamps, one of which moves; `way` is its poses at 0 and 1 s.
+/// Returns a rod between two clamps, one of which moves; `way` is its poses at 0 and 1 s.
 Scene moving_clamp(const std::string& way) {
   return parse_scene(
       "name = \"led\"\ngravity = [0, 0, -9.81]\n[rod]\nlength = 0.5\nbending_stiffness = 2e-3\n"

@@ -38,7 +38,7 @@ std::string gripper(double at, const std::string& more, const std::string& hold 
 
 Scene read(const std::string& text) { return parse_scene(text, "my.toml"); }
 
-/// The frame of the second of two clamps along x.
+/// Returns the frame of the second of two clamps along x.
 FrameHold frame_of(const std::string& keys) {
   const Scene scene =
       read(rod + gripper(0, "direction = 0\nroll = 0\n") + gripper(0.5, keys + "\n"));

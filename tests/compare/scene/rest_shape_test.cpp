@@ -28,7 +28,8 @@ namespace {
 
 constexpr double shaft_length = 0.24;
 
-/// A shaft of 0.2 m, an arc of 80 1/m and one of 40 1/m, 0.02 m each.
+/// Returns a point of a curve that consists of a straight shaft of 0.2 m, an arc of 80 1/m and one
+/// of 40 1/m, 0.02 m each. @param s  arc length [m]
 Eigen::Vector3d on_shaft(double s) {
   const double a = 80 * std::clamp(s - 0.2, 0.0, 0.02);
   const double b = a + 40 * std::max(s - 0.22, 0.0);
@@ -76,7 +77,8 @@ Scene resting_scene(const RestShape& shape, double length) {
   return scene;
 }
 
-/// The farthest that points at equal arc lengths of a curve are from a solved shape's.
+/// Returns the largest distance between points of a curve and of a solved shape at equal arc
+/// lengths.
 double largest_distance_from_curve(const Scene& scene, Model model,
                                    const std::function<Eigen::Vector3d(double)>& curve) {
   std::vector<double> s;
@@ -223,14 +225,15 @@ MeasuredShape framed_helix(int count, double extra) {
   return shape;
 }
 
-/// A flat cable at rest on that helix.
+/// Returns a flat cable whose rest shape is a helix.
 Scene flat_helix(const RestShape& shape) {
   Scene scene = resting_scene(shape, helix_length);
   scene.given_bending_stiffness_2 = 5e-3;
   return scene;
 }
 
-/// The farthest that points and d1 of a solved shape are from the helix [m, rad].
+/// Returns the largest distance of points, and the largest angle of d1, between a solved shape and
+/// the helix [m, rad].
 Eigen::Vector2d largest_distance_from_helix(const Scene& scene, Model model, double extra) {
   const Solution solution = solve(scene, model, {}, equal_arc_lengths(helix_length, 61));
   Eigen::Vector2d most = Eigen::Vector2d::Zero();

@@ -60,7 +60,7 @@ Scene three_clamps() {
   return scene;
 }
 
-/// A rod between two clamps that sags onto a compliant floor.
+/// Returns a rod between two clamps that sags onto a compliant floor.
 Scene yielding_floor() {
   Scene scene = two_clamps(30, {0.9, 0.2, 0});
   scene.obstacles = {{.stiffness = 20000 * scene.bending_stiffness()}};

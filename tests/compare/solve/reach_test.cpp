@@ -13,7 +13,7 @@ namespace {
 
 using Eigen::Vector3d;
 
-/// A floor and a tilted wall that no point of a rod of length 1 gets to.
+/// Returns the scene with a floor and a tilted wall that no point of a rod of length 1 reaches.
 Scene with_obstacles_out_of_reach(Scene scene) {
   scene.obstacles.push_back({obstacle::Body::half_space({0, -100, 0}, Eigen::Vector3d::UnitY())});
   scene.obstacles.push_back({obstacle::Body::half_space({-50, 0, 0}, {3, 1, 2}), 1000});

@@ -13,8 +13,8 @@ namespace {
 using energy_model::Equilibrium;
 using energy_model::Samples;
 
-/// A rod with two bending stiffnesses whose weight bends it about the stiffer axis: it buckles
-/// laterally to either side.
+/// Returns a rod with two bending stiffnesses whose weight bends it about the stiffer axis: it
+/// buckles laterally to either side.
 Scene ribbon() {
   Scene scene = heavy_scene(30, 0);
   scene.given_mass_per_length = scene.mass_per_length();

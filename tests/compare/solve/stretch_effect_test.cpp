@@ -58,7 +58,7 @@ TEST(StretchEffect, IsTheElasticCatenarysToFirstOrder) {
   }
 }
 
-/// A rubber rod of 1 m in one clamp.
+/// Returns a rubber rod of 1 m in one clamp.
 Scene held_rubber(const Vector3d& direction) {
   Scene scene;
   scene.gravity = {0, 0, -9.81};

@@ -14,7 +14,7 @@
 namespace dlo::compare {
 namespace {
 
-/// Two points a metre apart, the second `offset` above its place.
+/// Returns two points a metre apart, of which the second one is displaced upwards by `offset`.
 Eigen::Matrix3Xd two_points(double offset) {
   Eigen::Matrix3Xd points = Eigen::Matrix3Xd::Zero(3, 2);
   points.col(1) = Eigen::Vector3d(1, offset, 0);

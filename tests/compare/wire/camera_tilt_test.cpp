@@ -110,8 +110,8 @@ TEST(CameraTilt, IsRefusedWhereMoreThanWeightActs) {
       has_all(refusal(), {"wire: its plane or gravity differs from", "under one gravity)"}));
 }
 
-/// The probability of a logarithm of E by one shape, summed over all directions of both clamps, by
-/// quadrature.
+/// Returns the probability of a logarithm of E by one shape, summed over all directions of both
+/// clamps, by quadrature.
 double log_probability(const Scene& scene, double log_modulus, const MeasuredShape& shape,
                        double noise, double tolerance) {
   constexpr int directions = 15;

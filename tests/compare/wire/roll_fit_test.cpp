@@ -44,7 +44,7 @@ std::string toml_vector(const Vector3d& v) {
   return fmt::format("[{:.17g}, {:.17g}, {:.17g}]", v.x(), v.y(), v.z());
 }
 
-/// A wire between two clamps in space that twist it by `roll`.
+/// Returns a wire between two clamps in space that twist it by `roll`.
 Scene twisted_wire(const Vector3d& last, const Vector3d& direction, double roll) {
   return parse_scene(
       "[rod]\nlength = 0.4\nbending_stiffness = 1e-3\ntorsional_stiffness = 0.8e-3\n"
@@ -76,7 +76,7 @@ TEST(RollFit, TheRollOfATwistedWireIsFoundWithinFiveDegrees) {
   }
 }
 
-/// A wire that hangs from one clamp, pulled at its end.
+/// Returns a wire that hangs from one clamp, pulled at its end.
 Scene hanging_wire(const Vector3d& direction, const Vector3d& force) {
   return parse_scene(
       "[rod]\nlength = 1\nbending_stiffness = 0.05\ntorsional_stiffness = 0.04\n"

@@ -18,7 +18,7 @@ namespace {
 constexpr double half_turn = std::numbers::pi;
 constexpr double true_share = 0.55;  // GJ / EI
 
-/// Two clamps 0.8 l apart that turn the wire by an angle.
+/// Returns a wire between two clamps 0.8 l apart that twist it by `roll`.
 Scene turned_wire(double roll) {
   Scene scene = test::two_clamps(20, {0.8, 0, 0});
   scene.grippers[0].frame.emplace();
