@@ -29,7 +29,7 @@ Eigen::SparseMatrix<double> with_border(const BorderedMatrix& K) {
   return result;
 }
 
-/// Gram-Schmidt orthonormalisation, repeated once for nearly parallel columns.
+/// Orthonormalises the columns by Gram-Schmidt, repeated once for nearly parallel columns.
 void orthonormalise(Eigen::MatrixX3d& block) {
   for (Eigen::Index i = 0; i < SlowModes::most; ++i) {
     block.col(i).normalize();

@@ -126,7 +126,7 @@ double rms_of(const Eigen::VectorXd& distances) {
   return std::sqrt(distances.squaredNorm() / static_cast<double>(distances.size()));
 }
 
-/// RMS distance of points from the nearest vertices of a dense polyline.
+/// Returns the RMS distance of points from the nearest vertices of a dense polyline.
 double nearest(const Points& from, const Points& to) {
   Eigen::VectorXd distances(from.cols());
   for (Eigen::Index i = 0; i < from.cols(); ++i) {

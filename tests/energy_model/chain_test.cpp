@@ -56,7 +56,7 @@ TEST_P(ChainOfEveryLaw, GradientIsTheDifferenceOfTheEnergy) {
   EXPECT_EQ(gradient[0], 0);
 }
 
-/// Moment of a joint of stiffness 1 between segments of length 1 that is bent by alpha.
+/// Returns the moment of a joint of stiffness 1 between segments of length 1 that is bent by alpha.
 double unit_moment(JointLaw law, double alpha) {
   const double s = std::sin(alpha / 2);
   const double t = std::tan(alpha / 2);

@@ -94,7 +94,7 @@ benchmark::Counter ratio_counter(double seconds) {
   return {seconds, benchmark::Counter::kIsIterationInvariantRate | benchmark::Counter::kInvert};
 }
 
-/// Distance from the exact shape of a horizontal clamp, worked out once for each Gamma.
+/// Returns the distance from the exact shape of a horizontal clamp, worked out once for each Gamma.
 double error(const Equilibrium& energy, double gamma) {
   static std::map<double, Eigen::Matrix3Xd> exact;
   const std::vector<double> s = {0.1, 0.25, 0.5, 0.75, 1};
@@ -126,7 +126,7 @@ BENCHMARK_CAPTURE(cold_clamp, gamma_18, 18);
 BENCHMARK_CAPTURE(cold_clamp, gamma_100, 100);
 BENCHMARK_CAPTURE(cold_clamp, gamma_1000, 1000);
 
-/// The gripper turns by 1 degree to and fro.
+/// Measures solves while the gripper rotates to and fro by 1 degree.
 void warm_clamp(benchmark::State& state, double gamma) {
   const std::array<Problem, 2> problems = {clamp(gamma), clamp(gamma, 1)};
   EnergySolver solver;
@@ -164,7 +164,7 @@ Problem sideways_load() {
 }
 BENCHMARK_CAPTURE(cold, clamp_spatial, sideways_load())->Unit(benchmark::kMicrosecond);
 
-/// The end's clamp turns by 1 degree to and fro.
+/// Measures solves while the clamp at the end rotates to and fro by 1 degree.
 void warm_two_clamps(benchmark::State& state) {
   Problem turned = two_clamps(10, 0.8, 0.3);
   turned.grips[1].direction = Eigen::AngleAxisd(std::numbers::pi / 180, Eigen::Vector3d::UnitY()) *

@@ -23,7 +23,8 @@ Problem with_weight_as_load(Problem problem) {
   return problem;
 }
 
-/// One or two loads of up to 0.6 (1 + Gamma) on all of the rod or on parts of it.
+/// Returns the problem with one or two line loads of up to 0.6 (1 + Gamma), on the whole rod or on
+/// parts of it.
 Problem with_random_line_loads(Problem problem, std::uint64_t seed, bool planar) {
   RandomNumbers random(seed);
   const double size = 0.6 * (1 + problem.weight_per_length.norm());

@@ -30,7 +30,7 @@ using obstacle::Body;
 
 using Corners = std::vector<Eigen::Vector3d>;
 
-/// energy_near() from points on a line from corner to corner.
+/// Returns energy_near() from points on the polyline through `corners`.
 Equilibrium solve_near_polyline(const Problem& problem, const Corners& corners) {
   const std::vector<double> s = equal_arc_lengths(problem.length, 21);
   return energy_near(problem, s, test::start_along_polyline(corners).sample(s).points);
@@ -170,7 +170,7 @@ TEST(SidesOfBodies, ARodThatLiesOnYieldingCirclesIsListed) {
   EXPECT_NE(find_stable(all_energy(problem), rod), nullptr);
 }
 
-/// Every stable equilibrium that is known is found from its own points.
+/// Expects that energy_near() finds every known stable equilibrium from its own points.
 void expect_found_from_own_points(const Problem& problem, const std::string& name) {
   const std::vector<double> s = equal_arc_lengths(problem.length, 41);
   for (const Equilibrium& known : all_energy(problem)) {

@@ -114,7 +114,7 @@ INSTANTIATE_TEST_SUITE_P(Laws, BendingOfBothLaws,
                            return instance.param == BendingLaw::paper ? "paper" : "hooke";
                          });
 
-/// Moment of one joint of the paper's law between segments of lengths a and b.
+/// Returns the moment of one joint of the paper's law between segments of lengths a and b.
 double paper_moment(double a, double b, double alpha) {
   Eigen::Matrix3Xd points = one_joint(1, alpha);
   points.col(0) *= a;
@@ -137,7 +137,7 @@ TEST(PaperBending, IsWeakerBetweenUnequalSegmentsThanItsMeanLengthSays) {
   }
 }
 
-/// Median over random shapes of |F + dU/dP| / |F|.
+/// Returns the median over random shapes of |F + dU/dP| / |F|.
 double paper_share_without_potential(double length_spread) {
   const Bending bending{BendingLaw::paper, 2.5};
   std::vector<double> shares;

@@ -37,7 +37,7 @@ Rod rod_over_floor(Eigen::Index points, double height) {
   return rod;
 }
 
-/// Between the clamps and below them, a little out of the plane.
+/// Returns points that sag between the clamps and are a little out of the plane.
 Eigen::Matrix3Xd sagging(const Rod& rod, double sag) {
   const Eigen::Index points = rod.points();
   const double height = rod.grips.back().targets(1, 0);

@@ -21,7 +21,8 @@ struct Start {
   Eigen::Matrix3Xd points;
 };
 
-/// 1 m of 1 N between two pins `apart`, sagging and a little out of the plane.
+/// Returns the start of a rod of 1 m and 1 N between two pins; it sags and is a little out of the
+/// plane. @param apart  distance of the pins [m]
 Start between_pins(Eigen::Index points, double apart, double c_c, const Bending& bending) {
   Start start;
   const auto segments = static_cast<double>(points - 1);

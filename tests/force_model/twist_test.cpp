@@ -176,7 +176,7 @@ TEST(Twist, StepsCountItsStiffness) {
   }
 }
 
-/// M l / B at which a straight rod between clamps loses its stability, by bisection.
+/// Returns M l / B at which a straight rod between clamps loses its stability, by bisection.
 double buckling_moment(int points) {
   TwistedRod twisted;
   twisted.points = points;

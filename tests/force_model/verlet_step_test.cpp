@@ -39,8 +39,8 @@ TEST(VerletStepper, GoesThroughTimeWithSecondOrder) {
   EXPECT_NEAR(coarse / fine, 4, 0.2);
 }
 
-/// Kinetic and potential energy at each step but the first and the last; velocities by central
-/// differences.
+/// Returns the kinetic and potential energy at each step but the first and the last; velocities by
+/// central differences.
 std::vector<double> energies(const Swinging& swinging, int steps) {
   Simulation simulation(swinging.rod, swinging.steel.straight(), swinging.options);
   std::vector<double> result;

@@ -105,7 +105,7 @@ Work batch_step(int points) {
   return Work([batch] { batch->step(1); });
 }
 
-/// Exponent of the cost of a step against N, by least squares over logarithms.
+/// Returns the exponent of the cost of a step against N, by least squares over logarithms.
 double slope_against_points() {
   const std::vector<int> sizes = {64, 128, 256, 512, 1024, 2048};
   std::vector<Work> works;

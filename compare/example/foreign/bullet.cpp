@@ -109,7 +109,7 @@ class Simulation {
   }
 
  private:
-  /// Link i ends at the point i + 2, where its mass is.
+  /// Builds the multibody. Link i ends at the point i + 2, where its mass is.
   void build() {
     body_.setBasePos(to_bullet(chain_.first_point));
     body_.setWorldToBaseRot(to_bullet(chain_.frames.front()).inverse());
@@ -153,7 +153,7 @@ class Simulation {
     }
   }
 
-  /// Kinetic energy, but for factors: squares of the turns within a step.
+  /// Returns the sum of the squared rotations in the last step, proportional to the kinetic energy.
   [[nodiscard]] double motion() const {
     double sum = 0;
     for (int i = 0; i < links_; ++i) {

@@ -47,10 +47,10 @@ struct Hinge {
   double bend, twist;
 };
 
-/// Energy of a hinge [J], by the turn of its second segment in the frame of its first: of the law
-/// `hooke` in bending, -4 k log cos(theta / 2), whose torque is 2 k tan(theta / 2), and kt phi^2 /
-/// 2 in twist. A turn with the quaternion (w, x, y, z) is a twist phi about the segment and the
-/// shortest turn theta between the segments, with
+/// Returns the energy of a hinge [J], by the rotation of its second segment in the frame of its
+/// first: of the law `hooke` in bending, -4 k log cos(theta / 2), whose torque is 2 k tan(theta /
+/// 2), and kt phi^2 / 2 in twist. A turn with the quaternion (w, x, y, z) is a twist phi about the
+/// segment and the shortest turn theta between the segments, with
 ///     cos(theta / 2)^2 = w^2 + x^2,   tan(phi / 2) = x / w. (1)
 inline double energy(const Hinge& hinge, const Quaternion& turn) {
   const double phi = 2 * std::atan(turn[1] / turn[0]);
@@ -58,7 +58,7 @@ inline double energy(const Hinge& hinge, const Quaternion& turn) {
          hinge.twist * phi * phi / 2;
 }
 
-/// Torque [N m] on the second segment, in its own frame: (1) differentiated with
+/// Returns the torque [N m] on the second segment, in its own frame: (1) differentiated with
 ///     d(w, x, y, z) = (w, x, y, z) (0, omega) / 2.
 inline Vector torque(const Hinge& hinge, const Quaternion& turn) {
   const auto [w, x, y, z] = turn;
@@ -81,7 +81,7 @@ struct Chain {
   Vector end{},
       last_hinge{};  ///< of a rod with a second clamp: where it ends, and its last hinge [m]
 
-  /// Turn of a hinge's second segment in the frame of its first, to start with.
+  /// Returns the initial rotation of a hinge's second segment in the frame of its first segment.
   [[nodiscard]] Quaternion turn(std::size_t hinge) const {
     return product(inverse(frames[hinge]), frames[hinge + 1]);
   }

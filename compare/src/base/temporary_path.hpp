@@ -57,8 +57,8 @@ class TemporaryFile {
   TemporaryFile& operator=(const TemporaryFile&) = delete;
 
   [[nodiscard]] const std::string& path() const { return path_; }
-  /// Descriptor, which the caller closes; -1 if the file could not be made, with the reason in
-  /// errno.
+  /// Returns the descriptor, which the caller closes; -1 if the file could not be made, with the
+  /// reason in errno.
   [[nodiscard]] int descriptor() const { return descriptor_; }
 
  private:

@@ -19,7 +19,7 @@ constexpr double time_step = 28.0 / nominal_moving_steps;
 constexpr int frame_stride = 50;
 constexpr int first_seen_frame = static_cast<int>(movement_begins * 1000) + frame_stride / 2;
 
-/// Distance of the clamp from the third point, half a segment along the rod [m].
+/// Returns the distance of the clamp from the third point, half a segment along the rod [m].
 double clamp_distance() { return table_1().segment() / 2; }
 
 /// Returns the gripper's pose. At the beginning and the end of the movement its rates are those

@@ -18,7 +18,7 @@ class Stopwatch {
   Stopwatch(const BenchmarkOptions& options, std::vector<std::string>& skipped)
       : options_(options), skipped_(skipped) {}
 
-  /// Elapsed time since construction.
+  /// Returns the elapsed time since construction.
   [[nodiscard]] double seconds() const { return timer_.seconds(); }
   void allow(double seconds) { deadline_ = this->seconds() + seconds; }
   [[nodiscard]] double left() const { return deadline_ - seconds(); }

@@ -117,7 +117,7 @@ class SpanDynamics {
   [[nodiscard]] bool may_touch() const { return !grid_.empty(); }
   /// Whether strains of twist are among the unknowns; they vibrate much faster than the others.
   [[nodiscard]] bool has_twist() const { return twist_inertia_.size() > 0; }
-  /// Largest depth within a rigid obstacle; 0 without contact.
+  /// Returns the largest depth within a rigid obstacle; 0 without contact.
   [[nodiscard]] double depth() const;
 
   /// Returns the shape in the span's own frame.

@@ -21,8 +21,8 @@ constexpr int slow_convergence = 8;
 /// count as a failure.
 constexpr double least_step = 1e-9;
 
-/// Interval around a break of the drive, at which the velocity jumps. A step that ends at the break
-/// uses the velocity before it; the step that begins there uses the velocity after it.
+/// Returns the interval around a break of the drive, at which the velocity jumps. A step that ends
+/// at the break uses the velocity before it; the step that begins there uses the velocity after it.
 double break_interval(double time) { return 1e-12 * std::max(1.0, std::abs(time)); }
 double before_break(double time) { return time - break_interval(time); }
 double after_break(double time) { return time + break_interval(time); }

@@ -92,7 +92,7 @@ class SpanIntegrator {
   [[nodiscard]] long steps() const { return steps_; }
   [[nodiscard]] double smallest_step() const { return smallest_step_; }
   [[nodiscard]] double error() const { return error_; }
-  /// Largest SpanDynamics::depth() at the ends of steps.
+  /// Returns the largest SpanDynamics::depth() at the ends of steps.
   [[nodiscard]] double depth() const { return depth_; }
 
  private:

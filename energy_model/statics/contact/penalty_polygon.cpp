@@ -186,7 +186,7 @@ class PenaltyRelaxation {
     return result;
   }
 
-  /// Mean length of a segment.
+  /// Returns the mean length of a segment.
   [[nodiscard]] double segment() const {
     return span_.length / static_cast<double>(mesh_.s.size());
   }

@@ -19,11 +19,11 @@ struct Element {
   Eigen::Vector3d stiffness = Eigen::Vector3d::Ones();
 
   [[nodiscard]] double end() const { return begin + length; }
-  /// Strain u1, u2 or u3 (field 0, 1 or 2) for a coefficient of 1 of p_0 = 1.
+  /// Returns the strain u1, u2 or u3 (field 0, 1 or 2) for a coefficient of 1 of p_0 = 1.
   [[nodiscard]] double strain(Eigen::Index field) const {
     return 1 / std::sqrt(stiffness[field] * length);
   }
-  /// Rotation of the frame over the whole element for a coefficient of 1 of p_0 [rad].
+  /// Returns the rotation of the frame over the whole element for a coefficient of 1 of p_0 [rad].
   [[nodiscard]] double angle(Eigen::Index field) const {
     return std::sqrt(length / stiffness[field]);
   }

@@ -11,7 +11,7 @@
 
 namespace dlo::energy_model {
 
-/// Angle of a direction in the plane x-y, from x to y [rad].
+/// Returns the angle of a direction in the plane x-y, from x to y [rad].
 [[nodiscard]] double angle_of(const Eigen::Vector3d& direction);
 
 /// Returns the angle that is nearest to `target` and differs from `angle` by a multiple of 2 pi
@@ -48,7 +48,7 @@ class PlanarFrames {
   /// Resizes a state; apart from tangent_jacobian() and fit(), nothing else allocates.
   void resize(State& state) const;
 
-  /// Angle at the start [rad]; 0 if it is unknown.
+  /// Returns the angle at the start [rad]; 0 if it is unknown.
   [[nodiscard]] double start_theta() const { return start_theta_; }
   /// Derivatives of the nodes' angles by the unknowns, nodes x unknowns.
   [[nodiscard]] const Eigen::MatrixXd& by_unknown() const { return angle_; }

@@ -68,7 +68,7 @@ class RodFrames {
     Eigen::MatrixX3d along;
     Eigen::MatrixXd spins, scaled;
 
-    /// Frame of the span's end: columns d1, d2, t.
+    /// Returns the frame of the span's end: columns d1, d2, t.
     [[nodiscard]] Eigen::Matrix3d end_frame() const { return panel_ends.back().toRotationMatrix(); }
   };
 

@@ -51,7 +51,7 @@ class ReducedHessian {
   [[nodiscard]] bool factor_shifted(double mu) { return factor(mu, shifted_); }
   /// Replaces z by (Z^T H Z + mu)^-1 z, with the mu of the last factor_shifted().
   void solve_shifted(Eigen::VectorXd& z) const { cholesky_solve(shifted_, z); }
-  /// Diagonal of Z^T H Z.
+  /// Returns the diagonal of Z^T H Z.
   [[nodiscard]] Eigen::VectorXd diagonal() const {
     return rotated_hessian_.diagonal().tail(free());
   }
@@ -76,7 +76,7 @@ class ReducedHessian {
 
   /// H; only valid without constraints.
   [[nodiscard]] const Eigen::MatrixXd& unconstrained() const { return rotated_hessian_; }
-  /// Z^T H Z, free x free.
+  /// Returns Z^T H Z, free x free.
   [[nodiscard]] Eigen::MatrixXd matrix() const;
   /// Returns Z v, a vector of free directions in the unknowns.
   [[nodiscard]] Eigen::VectorXd to_unknowns(const Eigen::VectorXd& v) const;
@@ -165,7 +165,7 @@ class NewtonSystem {
   /// Returns the minimum-norm least-squares solution, which has no component along near-null modes.
   [[nodiscard]] Eigen::VectorXd minimum_norm_step(const Eigen::VectorXd& right);
 
-  /// H on the directions that the constraints leave free; without constraints, H itself.
+  /// Returns H on the directions that the constraints leave free; without constraints, H itself.
   [[nodiscard]] ReducedHessian& reduced_hessian() { return reduced_; }
   [[nodiscard]] const ReducedHessian& reduced_hessian() const { return reduced_; }
 

@@ -18,13 +18,15 @@ struct NewtonFactor {
   Eigen::VectorXd x, multipliers;  ///< the point
   double scale = 1;                ///< scale of forces there, by which multipliers are divided
 
-  /// Distance of a solution from the point: unknowns, and multipliers divided by a scale of forces.
+  /// Returns the distance of a solution from the point: unknowns, and multipliers divided by a
+  /// scale of forces.
   [[nodiscard]] double distance(const SpanSolution& solution, double forces) const {
     return (solution.x - x).norm() + (solution.multipliers - multipliers).norm() / forces;
   }
 };
 
-/// Scale of forces. It includes the multipliers, as grips may pull harder than weight and loads.
+/// Returns the scale of forces. It includes the multipliers, as grips may pull harder than weight
+/// and loads.
 [[nodiscard]] inline double scale_of_forces(const SpanSolution& solution, double load) {
   return 1 + load + solution.multipliers.norm();
 }

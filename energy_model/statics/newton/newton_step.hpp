@@ -39,9 +39,9 @@ class NewtonStep {
   /// buffers.first_step.
   void update();
 
-  /// Norm of the part of the step that moves the unknowns.
+  /// Returns the norm of the part of the step that moves the unknowns.
   [[nodiscard]] double size() const { return buffers_.step.head(buffers_.gradient.size()).norm(); }
-  /// Norm of the step with multipliers, these divided by the scale of forces.
+  /// Returns the norm of the step with multipliers, these divided by the scale of forces.
   [[nodiscard]] double norm_with_multipliers() const;
 
   /// Whether there are no constraints and the factor's Hessian is positive definite.

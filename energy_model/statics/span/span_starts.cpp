@@ -223,7 +223,7 @@ std::optional<TangentField> field_on_obstacle(const Span& span, const Span::Obst
   });
 }
 
-/// Arc lengths at which a start is compared with the prescribed frame at the end.
+/// Returns the arc lengths at which a start is compared with the prescribed frame at the end.
 Eigen::VectorXd comparison_arc_lengths(const Span& span) {
   constexpr Eigen::Index points = 257;
   return Eigen::VectorXd::LinSpaced(points, 0, span.length);

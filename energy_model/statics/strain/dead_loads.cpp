@@ -17,7 +17,8 @@ double energy_of_forces(const TermSetup& setup, const Eigen::MatrixX3d& tangents
   return energy;
 }
 
-/// Rotation of a planar span's tangent at a load from the zero of its couple (CoupleZero) [rad].
+/// Returns the rotation of a planar span's tangent at a load from the zero of its couple
+/// (CoupleZero) [rad].
 double couple_angle(const TermSetup& setup, const Eigen::VectorXd& x, const Span::Load& load) {
   const Span& span = setup.span;
   const double start = span.start_direction ? angle_of(*span.start_direction) : 0;

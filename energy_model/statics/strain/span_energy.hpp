@@ -46,7 +46,7 @@ class SpanEnergy {
   [[nodiscard]] Eigen::Index constraints() const {
     return grips_.positions() + contacts_.count() + grips_.directions();
   }
-  /// Index of the first constraint on a direction; these constraints are the last ones.
+  /// Returns the index of the first constraint on a direction; these constraints are the last ones.
   [[nodiscard]] Eigen::Index first_direction_row() const {
     return constraints() - grips_.directions();
   }
@@ -54,8 +54,8 @@ class SpanEnergy {
   [[nodiscard]] int elements() const { return static_cast<int>(elements_.size()); }
   [[nodiscard]] double longest_element() const;
 
-  /// Identifier of the model's present values. It changes with reset() and when a clamp's angle
-  /// changes.
+  /// Returns the identifier of the model's present values. It changes with reset() and when a
+  /// clamp's angle changes.
   [[nodiscard]] long revision() const { return revision_; }
   /// Computes energy, gradient and constraints at x.
   void evaluate(const Eigen::Ref<const Eigen::VectorXd>& x, SpanPoint& point) const;
@@ -104,15 +104,16 @@ class SpanEnergy {
   [[nodiscard]] Eigen::VectorXd prolong_multipliers(const SpanEnergy& other,
                                                     const Eigen::VectorXd& multipliers) const;
 
-  /// Truncation indicator: largest rotation [rad] by one of the last two coefficients of an
-  /// element; small if the curvature is resolved.
+  /// Returns the truncation indicator: the largest rotation [rad] by one of the last two
+  /// coefficients of an element; small if the curvature is resolved.
   [[nodiscard]] double truncation(const Eigen::VectorXd& x) const { return truncation(x, terms()); }
-  /// Truncation indicator of the first `terms` coefficients.
+  /// Returns the truncation indicator of the first `terms` coefficients.
   [[nodiscard]] double truncation(const Eigen::VectorXd& x, int terms) const;
-  /// Twist: rotation of the end relative to the start [rad], natural twist included; 0 for a span
-  /// without unknowns of twist, which is planar or has no material directors and no end rotation.
+  /// Returns the twist: rotation of the end relative to the start [rad], natural twist included; 0
+  /// for a span without unknowns of twist, which is planar or has no material directors and no end
+  /// rotation.
   [[nodiscard]] double twist(const Eigen::VectorXd& x) const;
-  /// Torque of the clamp at the end about the tangent.
+  /// Returns the torque of the clamp at the end about the tangent.
   [[nodiscard]] double twisting_torque(const Eigen::VectorXd& x,
                                        const Eigen::VectorXd& multipliers) const;
   /// Returns the unknowns with the given twist.

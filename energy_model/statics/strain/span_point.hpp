@@ -37,10 +37,10 @@ struct SpanPoint {
 
   /// Tangents at the nodes, 3 x nodes.
   [[nodiscard]] Eigen::Matrix3Xd tangents() const { return t.transpose(); }
-  /// d1 of the rod's own frame at the nodes, for a span in space with material directors.
+  /// Returns d1 of the rod's own frame at the nodes, for a span in space with material directors.
   [[nodiscard]] Eigen::Matrix3Xd d1() const { return frames.d1.bottomRows(t.rows()).transpose(); }
-  /// d1 at the end of the frame that has Span::first_d1() at the start (the rod's own or Bishop's),
-  /// for a span in space.
+  /// Returns d1 at the end of the frame that has Span::first_d1() at the start (the rod's own or
+  /// Bishop's), for a span in space.
   [[nodiscard]] Eigen::Vector3d end_d1() const { return frames.end_frame().col(0); }
 };
 

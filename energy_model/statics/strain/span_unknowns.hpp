@@ -18,7 +18,7 @@ struct SpanUnknowns {
   [[nodiscard]] Eigen::Index columns() const { return free_start + elements * terms; }
   [[nodiscard]] Eigen::Index strains() const { return fields * columns(); }
   [[nodiscard]] Eigen::Index size() const { return strains() + (has_psi ? 1 : 0); }
-  /// Index of the first coefficient of an element.
+  /// Returns the index of the first coefficient of an element.
   [[nodiscard]] Eigen::Index first(Eigen::Index field, Eigen::Index element) const {
     return field * columns() + free_start + element * terms;
   }

@@ -21,7 +21,8 @@ c_c = 660
 
 class SceneOptions : public Command {
  protected:
-  /// `dlo solve` of the rod with more keys in its [force_model] and more options; without the time.
+  /// Returns the JSON of `dlo solve`, without times, for a rod with given keys in [force_model] and
+  /// given options.
   json solved(const std::string& keys, const std::string& options) {
     const std::string result =
         output_of(words({"solve", scene(short_rod + keys), "--format json", options}));

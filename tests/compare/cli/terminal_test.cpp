@@ -22,7 +22,7 @@ class Terminal : public Command {
     return read(path("typescript"));
   }
 
-  /// A long command shows `progress`, and none of it is left behind the last erasure.
+  /// Expects that a long command shows `progress` and erases all of it at the end.
   void expect_progress(const std::string& arguments, const std::string& progress) {
     const std::string text = terminal_output("TERM=xterm", arguments);
     const std::size_t shown = text.find(progress);

@@ -31,7 +31,8 @@ Scene line(double EA, double apart, double EI = 1) {
   return scene;
 }
 
-/// Tension at the pins, on one level, of a line without EI that stretches: with H at the middle,
+/// Returns the tension at the pins, on one level, of a line without EI that stretches: with H at
+/// the middle,
 ///     apart = H l / EA + 2 H / w asinh(w l / (2 H))   (Irvine, Cable Structures, ch. 1).
 double tension_of(double EA, double w, double l, double apart) {
   double low = 1e-3;

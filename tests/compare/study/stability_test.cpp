@@ -59,7 +59,7 @@ TEST(HardCases, AreLeftOutByName) {
   EXPECT_EQ(results[1].name, "crumpled 3");
 }
 
-/// N = 1000 needs eight million steps, which belong into the command's own run.
+/// Whether a case needs so many steps that only the command runs it: N = 1000 needs eight million.
 bool exceeds_a_million_steps(const HardCase& hard) { return hard.start.cols() > 500; }
 
 std::vector<int> cases_within_a_million_steps() {
@@ -162,7 +162,7 @@ TEST(Stability, ThePapersStepperBlowsUpBetweenUnequalSegments) {
   EXPECT_EQ(stability(options).front().outcome, Outcome::diverges);
 }
 
-/// Prediction and measurement over a map.
+/// Expects that the predicted limits of a stability map are safe and close to the measured ones.
 void expect_safe_and_tight(const std::string& what, const Scene& scene, MapAxis axis,
                            double tightest, double loosest) {
   const StabilityMap map =

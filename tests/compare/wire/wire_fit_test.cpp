@@ -57,7 +57,7 @@ Picture exact_picture(const Scene& truth, const Scene& nominal) {
   return picture;
 }
 
-/// Five pictures of one wire, clamped at angles from -60 to 60 degrees.
+/// Returns five pictures of one wire, clamped at angles from -60 to 60 degrees.
 std::vector<Picture> five_pictures(double clamp_error, double noise, std::mt19937& random) {
   std::uniform_real_distribution<double> anywhere(-1, 1);
   std::normal_distribution<double> turn(0, clamp_error);

@@ -175,7 +175,8 @@ struct Prediction {
   /// length.
   std::optional<double> repeatability_m;
 
-  /// Prediction error divided by the repeatability [-]; empty if the latter is unknown or 0.
+  /// Returns the prediction error divided by the repeatability [-]; empty if the latter is unknown
+  /// or 0.
   [[nodiscard]] std::optional<double> repeatability_ratio() const {
     if (!repeatability_m || !(*repeatability_m > 0)) return std::nullopt;
     return rms_m / *repeatability_m;
