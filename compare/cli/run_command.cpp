@@ -69,8 +69,8 @@ class CommandTimeLimit {
     ::sigfillset(&action.sa_mask);
     ::sigaction(SIGALRM, &action, nullptr);
     constexpr double tolerance_factor = 1.05;
-    constexpr double grace_seconds = 0.5;
-    start_timer(tolerance_factor * seconds + grace_seconds);
+    constexpr double timer_margin_seconds = 0.5;
+    start_timer(tolerance_factor * seconds + timer_margin_seconds);
   }
   ~CommandTimeLimit() {
     start_timer(0);

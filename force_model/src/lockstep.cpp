@@ -181,8 +181,9 @@ MovingShape BatchBlock::shape(std::size_t rod) {
 }
 
 void BatchBlock::nudge(std::size_t rod, const Eigen::Matrix3Xd& direction) {
-  constexpr double share = 1e-6;  // in lengths, far below any tolerance
-  block_.set(positions, rod, block_.view(positions, rod) + share * rods_[rod].length() * direction);
+  constexpr double displacement_share = 1e-6;  // in lengths, far below any tolerance
+  block_.set(positions, rod,
+             block_.view(positions, rod) + displacement_share * rods_[rod].length() * direction);
   block_.update_dimension(rods_);
   if (!implicit_) return;
   copy_points(rod, points_);

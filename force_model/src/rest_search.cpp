@@ -120,9 +120,9 @@ Eigen::Matrix3Xd RestSearch::check_rest(const MovingShape& shape) {
   const double nearly = rod_.has_obstacles() ? 100 : 1;
   // The steps of a descent have no momentum. A shape that only creeps in such steps needs momentum,
   // so no further descent follows one that did not halve the distance from rest.
-  constexpr double helps = 0.5;
+  constexpr double required_descent_ratio = 0.5;
   bounces_ = due && check.stable && check.remaining_error < nearly * target_ &&
-             check.remaining_error < helps * descended_from_;
+             check.remaining_error < required_descent_ratio * descended_from_;
   descended_from_ = bounces_ ? check.remaining_error : std::numeric_limits<double>::infinity();
   if (bounces_) next_measurement_ = result_.steps + descent_steps;
   if (!seems_at_rest) return {};

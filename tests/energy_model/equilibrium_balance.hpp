@@ -151,7 +151,7 @@ inline BalanceDefects balance_of(const energy_model::Problem& problem,
     largest_torque = std::max(largest_torque, load.torque.norm());
   }
   for (const energy_model::LineLoad& load : problem.line_loads) {
-    largest_force = std::max(largest_force, load.between(0, l).norm());
+    largest_force = std::max(largest_force, load.force_between(0, l).norm());
   }
   for (const energy_model::Reaction& grip : shape.grips) {
     largest_force = std::max(largest_force, grip.force.norm());

@@ -94,7 +94,7 @@ TEST(NaturalRod, IsFreeBetweenClampsWhereTheStressFreeShapeEnds) {
 
 /// Returns the smallest eigenvalue of the planar shape of an intrinsically curved rod that hangs
 /// from a clamp.
-double hanging_curvature(double natural, double gamma) {
+double hanging_smallest_eigenvalue(double natural, double gamma) {
   Problem problem = clamped_rod();
   problem.grips[0].direction = -Vector3d::UnitY();
   problem.weight_per_length = {0, -gamma, 0};
@@ -108,9 +108,9 @@ double hanging_curvature(double natural, double gamma) {
 /// side of `gamma` is zero.
 double extrapolated_loss(double natural, double gamma, double side) {
   const double h = side * 2e-3 * gamma;
-  const double a = hanging_curvature(natural, gamma + h);
-  const double b = hanging_curvature(natural, gamma + 2 * h);
-  const double c = hanging_curvature(natural, gamma + 3 * h);
+  const double a = hanging_smallest_eigenvalue(natural, gamma + h);
+  const double b = hanging_smallest_eigenvalue(natural, gamma + 2 * h);
+  const double c = hanging_smallest_eigenvalue(natural, gamma + 3 * h);
   // In x = (weight - gamma) / h: Newton's form at 1, 2, 3.
   const double second = (c - 2 * b + a) / 2;
   double x = 0;
@@ -130,7 +130,7 @@ TEST(NaturalRod, HangingLeavesItsPlaneWhereItShould) {
   EXPECT_NEAR(extrapolated_loss(6, 11.868751, -1), 11.868751, 1e-5);
   EXPECT_NEAR(extrapolated_loss(6, 37.763909, 1), 37.763909, 1e-4);
   for (const double gamma : {2.0, 8.0, 12.0, 20.0, 40.0, 100.0}) {
-    EXPECT_GT(hanging_curvature(5, gamma), 0) << gamma;
+    EXPECT_GT(hanging_smallest_eigenvalue(5, gamma), 0) << gamma;
   }
 }
 

@@ -202,7 +202,7 @@ void run_force_model(const CalibrateOptions& options, bool points_are_given, boo
                     formats_of(document, {{"csv", [&] { return force_model_csv(fit); }},
                                           {"toml", [&] { return force_model_toml(fit); }}}));
   // The default target was not requested by the user.
-  if (!fit.reached() && options.target) exit_with_status(ExitStatus::outside_tolerance);
+  if (!fit.reaches_target() && options.target) exit_with_status(ExitStatus::outside_tolerance);
 }
 
 void prepare(Command& command) {

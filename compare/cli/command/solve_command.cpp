@@ -82,11 +82,11 @@ std::vector<compare::Solution> solutions_to_draw(const SolveOptions& options,
                                                  const compare::SolveOptions& solve,
                                                  const compare::Scene& scene,
                                                  const std::vector<compare::Solution>& solved) {
-  constexpr std::size_t enough = 101;
+  constexpr std::size_t dense_shape_points = 101;
   const compare::Solution& first = solved.front();
   const bool continuous =
       first.model == compare::Model::energy || first.model == compare::Model::exact;
-  if (!continuous || first.shape.arc_length.size() >= enough) return solved;
+  if (!continuous || first.shape.arc_length.size() >= dense_shape_points) return solved;
   constexpr int samples = 201;
   const std::vector<double> s = compare::equal_arc_lengths(scene.length, samples);
   if (options.all) return compare::solve_all(scene, solve, s).solutions;

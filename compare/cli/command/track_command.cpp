@@ -79,8 +79,8 @@ void add_track_command(CLI::App& app) {
                  "--frame-rate", o.request.frame_rate, "--obstacle-rate", o.request.obstacle_rate,
                  "--step-rate", o.request.step_rate, "--no-force", o.no_force, "--dynamic",
                  o.dynamic, o.damping, "--samples", o.request.options.samples, "--every",
-                 o.frames.every, "--shapes", o.frames.points, "--paraview", o.paraview, o.overrides,
-                 o.plot, o.output);
+                 o.frames.frame_interval, "--shapes", o.frames.points, "--paraview", o.paraview,
+                 o.overrides, o.plot, o.output);
   });
 }
 

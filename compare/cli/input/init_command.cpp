@@ -59,8 +59,8 @@ std::string next_steps(const compare::Scene& scene, const std::string& file) {
          "  dlo calibrate {0} -o params.toml    parameters of the force model\n",
          compare::shell_word(file));
   // Limit of Gamma; a horizontal cantilever sags by Gamma / 8 of its length.
-  constexpr double stiff = 1;
-  if (scene.gamma() < stiff) {
+  constexpr double stiff_gamma_limit = 1;
+  if (scene.gamma() < stiff_gamma_limit) {
     append(
         out,
         "The rod is stiff: level, it sags by about {:.2g} % of its length. Check it with\n"

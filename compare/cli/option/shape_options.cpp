@@ -35,12 +35,12 @@ std::string ShapeOptions::unit_hint(double polyline_m, double length) const {
 }
 
 void ShapeOptions::require_likely_unit(const compare::MeasuredShape& shape, double length) const {
-  constexpr double another_unit = 5;
+  constexpr double unit_suspicion_ratio = 5;
   const Eigen::Index segments = shape.points.cols() - 1;
   const double polyline_m =
       (shape.points.rightCols(segments) - shape.points.leftCols(segments)).colwise().norm().sum();
   const std::string hint = unit_hint(polyline_m, length);
-  const bool is_other = polyline_m > another_unit * length || polyline_m < length / 50;
+  const bool is_other = polyline_m > unit_suspicion_ratio * length || polyline_m < length / 50;
   if (!hint.empty() && is_other) {
     throw compare::InputError(fmt::format("{}: {}", shape.file, hint));
   }

@@ -57,11 +57,11 @@ std::string cause_or_problem(const CardScene& scene) {
     if (std::isfinite(cause.factor)) text += fmt::format(", {:.3g}", cause.factor);
     text += ": " + cause.words;
   }
-  if (text.empty() && !scene.right()) {
-    constexpr double converges = 0.8;
+  if (text.empty() && !scene.is_correct()) {
+    constexpr double least_converging_order = 0.8;
     text = fmt::format("{:.3g} % of l off with N = {}, {}", scene.runs.back().error * 100,
                        scene.runs.back().points,
-                       scene.order > converges
+                       scene.order > least_converging_order
                            ? fmt::format("and converges with order {:.1f}", scene.order)
                            : "the cause was not found");
   }
@@ -159,7 +159,7 @@ std::string cards_junit(const std::vector<Card>& cards) {
       } else if (scene.status() != RunStatus::solved) {
         one.outcome = "error";
         one.type = compare::to_string(scene.status());
-      } else if (!scene.right()) {
+      } else if (!scene.is_correct()) {
         one.outcome = "failure";
         one.type = "wrong";
       }

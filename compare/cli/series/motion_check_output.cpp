@@ -34,7 +34,7 @@ compare::Document motion_check_document(const MotionCheck& check, const std::str
                  {"rms_m", check.errors.rms_m},
                  {"rms_over_length", check.errors.rms_m / check.scene.length},
                  {"largest_m", check.errors.largest_m},
-                 {"worst", frame_error_json(check.worst())},
+                 {"worst", frame_error_json(check.worst_frame_error())},
                  {"lag_s", check.lag},
                  {"rms_without_lag_m", check.lag_rms_m},
                  {"at_rest_rms_m", check.at_rest_rms_m},

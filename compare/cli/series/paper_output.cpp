@@ -45,7 +45,7 @@ compare::Document paper_document(const PaperReport& report, const compare::Movin
   }
   Json variants = Json::array();
   for (const compare::ModulusVariant& variant : report.variants) {
-    Json row = {{"varied", variant.what},
+    Json row = {{"varied", variant.varied},
                 {"load_factor", variant.load_factor},
                 {"gamma", variant.gamma},
                 {"points", variant.settings.points},

@@ -18,8 +18,8 @@ namespace dlo::cli {
 
 /// Frames of a track that are written.
 struct TrackFrames {
-  int every = 1;        ///< interval of frames; frames with events and the last frame are added
-  bool points = false;  ///< whether JSON contains their shapes
+  int frame_interval = 1;  ///< interval of frames; frames with events and the last frame are added
+  bool points = false;     ///< whether JSON contains their shapes
 
   /// Returns the indices of the frames of a track that are written.
   [[nodiscard]] std::vector<std::size_t> of(const compare::Track& track) const;

@@ -25,7 +25,7 @@ const char* state(Outcome outcome) {
 compare::Document hard_cases_document(const std::vector<StabilityResult>& results) {
   Json cases = json_list(results, [&](const StabilityResult& r) -> Json {
     return {{"case", r.name},
-            {"what", r.what},
+            {"what", r.difficulty},
             {"stepper", compare::to_string(r.stepper)},
             {"outcome", compare::to_string(r.outcome)},
             {"steps", r.steps},

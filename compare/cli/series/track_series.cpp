@@ -123,7 +123,7 @@ Json force_json(const compare::ForceTrackSummary& force, const compare::Scene& s
           {"stepper", compare::to_string(scene.force_model.stepper)},
           {"points", scene.force_model.points},
           {"steps_per_frame", force.steps_per_frame},
-          {"steps_per_second", options.rates.steps},
+          {"steps_per_second", options.rates.step_rate},
           {"rest_error_over_length", force.rest_error},
           {"mean_error_over_length", force.mean},
           {"largest_error_over_length", force.largest},
@@ -201,7 +201,8 @@ Json dynamic_json(const DynamicTrack& dynamic, const compare::Track& track,
 std::vector<std::size_t> TrackFrames::of(const Track& track) const {
   std::vector<std::size_t> result;
   const std::size_t count = track.frames.size();
-  for (std::size_t i = 0; i < count; i += static_cast<std::size_t>(every)) result.push_back(i);
+  for (std::size_t i = 0; i < count; i += static_cast<std::size_t>(frame_interval))
+    result.push_back(i);
   for (const TrackEvent& event : track.events) result.push_back(event.frame);
   result.push_back(count - 1);
   std::sort(result.begin(), result.end());
@@ -217,15 +218,15 @@ compare::Document track_document(const compare::TrackResult& found, const compar
   Json result = {{"schema", "dlo/track/1"},
                  {"scene", scene.name},
                  {"model", "energy"},
-                 {"frames_per_second", options.rates.frames},
+                 {"frames_per_second", options.rates.frame_rate},
                  {"frame_s", track.median_seconds},
-                 {"frames_lost", track.lost},
-                 {"frames_repeated", track.repeated}};
+                 {"frames_lost", track.lost_frames},
+                 {"frames_repeated", track.repeated_frames}};
   result["stopped"] = json_or_null(track.stopped, stop_json);
   result["force_model"] = json_or_null(track.frames.front().force, [&](const auto& /*first*/) {
     return force_json(track.force, scene, options);
   });
-  result["no_force_model"] = text_or_null(track.force.none);
+  result["no_force_model"] = text_or_null(track.force.missing_reason);
   if (dynamic != nullptr) result["dynamic"] = dynamic_json(*dynamic, track, frames);
   result["events"] = json_list(
       track.events, [&](const TrackEvent& event) -> Json { return event_json(track, event); });
@@ -237,10 +238,10 @@ compare::Document track_document(const compare::TrackResult& found, const compar
 }
 
 std::string track_text(const compare::TrackResult& found, const compare::Scene& scene) {
-  constexpr std::size_t rows = 10;
+  constexpr std::size_t approximate_rows = 10;
   const Track& track = found.track;
-  const TrackFrames frames{
-      .every = static_cast<int>(std::max(std::size_t{1}, track.frames.size() / rows))};
+  const TrackFrames frames{.frame_interval = static_cast<int>(
+                               std::max(std::size_t{1}, track.frames.size() / approximate_rows))};
   compare::Document document = track_document(found, scene, frames);
   const std::vector<std::size_t> listed = frames.of(track);
   for (std::size_t i = 0; i < listed.size(); ++i) {

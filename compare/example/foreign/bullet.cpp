@@ -34,8 +34,8 @@ using foreign::Chain;
 using foreign::Quaternion;
 using foreign::Vector;
 
-constexpr double inertia = 1;      // moment of inertia of each body about its end [kg m^2]
-constexpr double at_rest = 1e-13;  // rotation in a step at the highest speed [rad]
+constexpr double moment_of_inertia = 1;  // moment of inertia of each body about its end [kg m^2]
+constexpr double at_rest = 1e-13;        // rotation in a step at the highest speed [rad]
 
 btVector3 to_bullet(const Vector& v) { return {v[0], v[1], v[2]}; }
 btQuaternion to_bullet(const Quaternion& q) { return {q[1], q[2], q[3], q[0]}; }
@@ -51,7 +51,7 @@ double time_step(const Chain& chain) {
     stiffness = std::max(stiffness, std::max(hinge.bend, hinge.twist));
   }
   for (const Vector& force : chain.force) weight += foreign::length(force);
-  return 0.25 / std::sqrt((8 * stiffness + weight * h) / inertia);
+  return 0.25 / std::sqrt((8 * stiffness + weight * h) / moment_of_inertia);
 }
 
 class Simulation {
@@ -115,10 +115,11 @@ class Simulation {
     body_.setWorldToBaseRot(to_bullet(chain_.frames.front()).inverse());
     // The moment of inertia of all masses at the rod's end, about the first hinge, is negligible.
     const double length = chain_.segment.front() * links_;
-    const double mass = 1e-4 * inertia / (length * length * links_);
+    const double mass = 1e-4 * moment_of_inertia / (length * length * links_);
     for (int i = 0; i < links_; ++i) {
-      body_.setupSpherical(i, mass, {inertia, inertia, inertia}, i - 1, btQuaternion::getIdentity(),
-                           {0, 0, 0}, {chain_.segment[static_cast<std::size_t>(i) + 1], 0, 0});
+      body_.setupSpherical(i, mass, {moment_of_inertia, moment_of_inertia, moment_of_inertia},
+                           i - 1, btQuaternion::getIdentity(), {0, 0, 0},
+                           {chain_.segment[static_cast<std::size_t>(i) + 1], 0, 0});
     }
     body_.finalizeMultiDof();
     for (int i = 0; i < links_; ++i) {

@@ -65,7 +65,7 @@ py::object track(const SharedScene& shared, const py::dict& what, const py::obje
     return compare::follow(scene, request, [&](auto, auto) { signals.throw_if_stopped(); });
   });
   const compare::DynamicTrack* dynamic = found.moving();
-  const cli::TrackFrames all{.every = 1, .points = true};
+  const cli::TrackFrames all{.frame_interval = 1, .points = true};
   py::object result = make_result(AnyResult(std::make_shared<Followed>(
       cli::track_text(found, scene), cli::json_text(cli::track_document(found, scene, all).json),
       compare::track_figures(scene, {found.track, dynamic}, found.options).strip.panels.front())));

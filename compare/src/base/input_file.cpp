@@ -122,9 +122,9 @@ InputFile::InputFile(int descriptor, std::string name)
 InputFile::~InputFile() { ::close(descriptor_); }
 
 bool InputFile::read_block(std::string& text, std::size_t most) {
-  constexpr std::size_t block = 1 << 16;
+  constexpr std::size_t read_block_size = 1 << 16;
   const std::size_t before = text.size();
-  text.resize(before + std::min(block, most));
+  text.resize(before + std::min(read_block_size, most));
   ssize_t count = 0;
   do {
     count = ::read(descriptor_, text.data() + before, text.size() - before);
@@ -164,8 +164,8 @@ std::string read_regular_file(const std::string& path, const std::string& name) 
 }
 
 std::string_view after_byte_order_mark(std::string_view text) {
-  constexpr std::string_view mark = "\xEF\xBB\xBF";
-  return text.starts_with(mark) ? text.substr(mark.size()) : text;
+  constexpr std::string_view byte_order_mark = "\xEF\xBB\xBF";
+  return text.starts_with(byte_order_mark) ? text.substr(byte_order_mark.size()) : text;
 }
 
 }  // namespace dlo::compare

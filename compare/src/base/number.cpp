@@ -18,10 +18,11 @@ long decimal_exponent(std::string_view number) {
   const long place = static_cast<long>(point) - static_cast<long>(first);
   std::string_view exponent = number.substr(std::min(mark + 1, number.size()));
   if (exponent.starts_with('+')) exponent.remove_prefix(1);
-  constexpr long beyond = 1'000'000'000;
+  constexpr long largest_exponent = 1'000'000'000;
   auto [value, length, error] = leading_number<long>(exponent);
-  if (error == std::errc::result_out_of_range) value = exponent.front() == '-' ? -beyond : beyond;
-  return std::clamp(value, -beyond, beyond) + place;
+  if (error == std::errc::result_out_of_range)
+    value = exponent.front() == '-' ? -largest_exponent : largest_exponent;
+  return std::clamp(value, -largest_exponent, largest_exponent) + place;
 }
 
 /// Shortens a number for a message, because it may have thousands of digits.

@@ -173,9 +173,9 @@ struct OutputFile::State {
   void copy_permissions() const {
     const std::optional<struct stat> existing = status_of(target.path);
     if (!existing) return;
-    constexpr unsigned permissions = 07777;
+    constexpr unsigned permission_bits = 07777;
     [[maybe_unused]] const int kept = ::fchown(descriptor, existing->st_uid, existing->st_gid);
-    if (::fchmod(descriptor, existing->st_mode & permissions) != 0) {
+    if (::fchmod(descriptor, existing->st_mode & permission_bits) != 0) {
       fail_to_write_output(file, errno);
     }
   }

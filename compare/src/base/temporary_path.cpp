@@ -29,15 +29,16 @@ std::atomic<bool> ending = false;
 
 /// Sleeps for a millisecond. A signal handler may call it.
 void wait_shortly() {
-  constexpr timespec pause{.tv_sec = 0, .tv_nsec = 1'000'000};
-  (void)::nanosleep(&pause, nullptr);
+  constexpr timespec wait_time{.tv_sec = 0, .tv_nsec = 1'000'000};
+  (void)::nanosleep(&wait_time, nullptr);
 }
 
 /// Whether a signal without a handler ends a process, as all do except these (signal(7)).
 bool ends_process(int number) {
-  constexpr std::array others = {SIGCHLD, SIGCONT, SIGURG,  SIGWINCH,
-                                 SIGSTOP, SIGTSTP, SIGTTIN, SIGTTOU};
-  return std::find(others.begin(), others.end(), number) == others.end();
+  constexpr std::array harmless_signals = {SIGCHLD, SIGCONT, SIGURG,  SIGWINCH,
+                                           SIGSTOP, SIGTSTP, SIGTTIN, SIGTTOU};
+  return std::find(harmless_signals.begin(), harmless_signals.end(), number) ==
+         harmless_signals.end();
 }
 
 extern "C" void end_groups_and_process(int number) {

@@ -81,8 +81,8 @@ void XmlRefusals::add(const std::string& message) {
 
 void XmlRefusals::throw_if_any() const {
   if (messages_.empty()) return;
-  constexpr std::size_t most = 10;
-  const std::size_t shown = std::min(messages_.size(), most);
+  constexpr std::size_t most_shown_messages = 10;
+  const std::size_t shown = std::min(messages_.size(), most_shown_messages);
   std::string text = fmt::format(
       "{}",
       fmt::join(messages_.begin(), messages_.begin() + static_cast<std::ptrdiff_t>(shown), "; "));

@@ -149,7 +149,8 @@ class Search {
   /// Adds the chains that may have the points of the shape. @param law  as candidate_chains(); the
   /// shape of a chain with the paper's law depends on its number of segments
   void add_chain_causes(Springs springs, std::optional<JointLaw> law = std::nullopt) {
-    constexpr double stretch = 1e-6;  // strain of a chain's segments; fits are not more accurate
+    constexpr double rms_floor_strain =
+        1e-6;  // strain of a chain's segments; fits are not more accurate
     const Shape& shape = check_.alignment.shape;
     for (const CandidateChain& chain : chains_for_shape(shape, springs, law)) {
       const std::string words = words_of(chain, shape);
@@ -157,7 +158,7 @@ class Search {
         add({fmt::format("it is {}, with the paper's joint law, c_b = {:.3g} N, which does not "
                          "converge to the rod",
                          words, chain.paper_stiffness),
-             std::max(chain.rms_m, stretch * scene_.length), 1, ExplanationKind::scene},
+             std::max(chain.rms_m, rms_floor_strain * scene_.length), 1, ExplanationKind::scene},
             "the paper's joint law");
       } else if (springs == Springs::fitted) {
         const std::string own_law = law_words(chain);

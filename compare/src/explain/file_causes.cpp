@@ -255,11 +255,11 @@ std::pair<double, std::vector<Eigen::Index>> greedy_path_from(Eigen::Index start
 void add_point_order_cause(const MeasuredShape& shape, const ShapeCheck& check,
                            const TakeFileCause& take) {
   constexpr Eigen::Index most_points = 300;
-  constexpr double clearly_shorter = 0.95;
+  constexpr double shorter_length_share = 0.95;
   const Eigen::Index count = shape.points.cols();
   if (!shape.arc_length.empty() || count > most_points) return;
-  std::pair<double, std::vector<Eigen::Index>> shortest{clearly_shorter * check.polyline_length_m,
-                                                        {}};
+  std::pair<double, std::vector<Eigen::Index>> shortest{
+      shorter_length_share * check.polyline_length_m, {}};
   for (Eigen::Index start = 0; start < count; ++start) {
     auto way = greedy_path_from(start, shape.points);
     if (way.first < shortest.first) shortest = std::move(way);

@@ -32,7 +32,7 @@ bool start_at_equilibrium(const SceneCause& cause, const energy_model::Equilibri
   if (cause.changes_support) {
     rods.clear_initial_rods();
     FittedRods::State lowest = rods.state(cause.start);
-    if (lowest.squares[0] < state.squares[0]) state = std::move(lowest);
+    if (lowest.sum_of_squares[0] < state.sum_of_squares[0]) state = std::move(lowest);
   }
   rods.set_initial_rods(state.rods);
   return state.rods[0].has_value();

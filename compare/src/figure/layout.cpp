@@ -107,11 +107,11 @@ std::pair<double, double> Cells::range() const {
 
 int Panel::full_height() const {
   // Pixels of the labels and title of the horizontal axis, and of the space above the plot.
-  constexpr int axes = 90;
+  constexpr int axis_pixels = 90;
   constexpr int legend_row = 20;
   const auto rows = std::count_if(curves.begin(), curves.end(),
                                   [this](const PlottedCurve& curve) { return shows_title(curve); });
-  return height + axes + legend_row * static_cast<int>(rows);
+  return height + axis_pixels + legend_row * static_cast<int>(rows);
 }
 
 Panel laid_out(Panel panel) {

@@ -26,12 +26,12 @@ double signed_curvature(const std::optional<Eigen::Vector3d>& normal,
 
 /// Returns the normal of the scene's plane if all points are in it; else std::nullopt.
 std::optional<Eigen::Vector3d> plane_through(const Scene& scene, const Eigen::Matrix3Xd& points) {
-  constexpr double thick = 1e-6;  // in lengths
+  constexpr double plane_tolerance = 1e-6;  // in lengths
   std::optional<Eigen::Vector3d> normal = scene.plane_normal();
   if (!normal) return std::nullopt;
   const Eigen::Vector3d grip_position = scene.grippers.front().position;
   for (const auto& point : points.colwise()) {
-    if (!(std::abs(normal->dot(point - grip_position)) <= thick * scene.length))
+    if (!(std::abs(normal->dot(point - grip_position)) <= plane_tolerance * scene.length))
       return std::nullopt;
   }
   return normal;
@@ -147,7 +147,7 @@ std::optional<Series> straight_rod_series(const Scene& scene) {
 }
 
 std::vector<Series> gripper_series(const Scene& scene) {
-  constexpr double stub = 0.04;  // in lengths
+  constexpr double clamp_stub_length = 0.04;  // in lengths
   std::vector<Series> all;
   Series grips{.id = "gripper",
                .title = scene.grippers.size() == 1 ? "gripper" : "grippers",
@@ -159,7 +159,7 @@ std::vector<Series> gripper_series(const Scene& scene) {
     grips.arc_length.push_back(gripper.at);
     if (!gripper.direction) continue;
     Series clamp{.id = fmt::format("clamp_{}", i + 1), .look = {.colour = "#909090", .width = 6}};
-    const Eigen::Vector3d along = stub * scene.length * *gripper.direction;
+    const Eigen::Vector3d along = clamp_stub_length * scene.length * *gripper.direction;
     clamp.points.resize(3, 2);
     clamp.points << gripper.position - along, gripper.position + along;
     clamp.arc_length = {gripper.at, gripper.at};
@@ -171,13 +171,14 @@ std::vector<Series> gripper_series(const Scene& scene) {
 
 std::optional<Series> contact_series(const std::vector<energy_model::ContactPart>& contacts,
                                      const RodPoints& rod, double length) {
-  constexpr double between = 1.0 / 150;  // largest distance of drawn points, in lengths
+  constexpr double largest_sample_distance =
+      1.0 / 150;  // largest distance of drawn points, in lengths
   Series series{.id = "contact",
                 .title = "where the rod itself touches",
                 .look = {.colour = "#207A34", .width = 0, .mark = Mark::dot, .mark_size = 0.45}};
   for (const energy_model::ContactPart& contact : contacts) {
     const double lies = contact.end - contact.begin;
-    const int steps = static_cast<int>(std::ceil(lies / (between * length)));
+    const int steps = static_cast<int>(std::ceil(lies / (largest_sample_distance * length)));
     for (int i = 0; i <= steps; ++i) {
       series.arc_length.push_back(contact.begin + (steps > 0 ? lies * i / steps : 0));
     }

@@ -90,12 +90,12 @@ std::vector<Panel> shape_panels(const Drawing& drawing) {
 Panel spatial_panel(const Drawing& drawing) {
   const std::vector<Series>& all = drawing.series;
   // Smallest side over the longest one, so that the tic labels fit.
-  constexpr double flattest = 0.6;
+  constexpr double least_side_ratio = 0.6;
   Panel panel{.upright = drawing.views.front().up, .equal_aspect = true};
   double longest = 0;
   for (const int axis : {0, 1, 2}) longest = std::max(longest, extent(range_of(all, axis)));
   const auto limited = [&](int axis) {
-    return axis_of(axis, widened(range_of(all, axis), flattest * longest));
+    return axis_of(axis, widened(range_of(all, axis), least_side_ratio * longest));
   };
   panel.x = limited(0);
   panel.y = limited(1);

@@ -267,19 +267,19 @@ void draw_profile(MaterialProfiles& material, const LogProfile::Interval& interv
 }
 
 /// Returns MaterialFit::warning if the residuals are too large; empty if they are not.
-/// @param squares  sum of their squares [m^2]
+/// @param sum_of_squares  sum of their squares [m^2]
 /// @param noise  given noise, unless the interval already accounts for larger residuals
-std::string warning_of(const MaterialProfiles& material, double squares,
+std::string warning_of(const MaterialProfiles& material, double sum_of_squares,
                        const std::optional<double>& noise) {
   const double nu = material.freedom();
   if (noise && nu > 0 &&
-      squares > std::pow(*noise, 2) * gsl_distribution(gsl_cdf_chisq_Qinv, 1e-3, nu)) {
+      sum_of_squares > std::pow(*noise, 2) * gsl_distribution(gsl_cdf_chisq_Qinv, 1e-3, nu)) {
     return fmt::format(
         "the rod does not fit these shapes: its residuals are {:.3g} times what the given noise "
         "explains, so the interval is meaningless",
-        std::sqrt(squares / nu) / *noise);
+        std::sqrt(sum_of_squares / nu) / *noise);
   }
-  const double rms = std::sqrt(squares / material.points());
+  const double rms = std::sqrt(sum_of_squares / material.points());
   const double length = material.scenes().front().length;
   if (rms > 0.05 * length) {
     return fmt::format(
@@ -424,7 +424,7 @@ MaterialFit fit_material_from(const std::vector<Scene>& scenes,
   MaterialProfiles material(scenes, shapes, options);
   MaterialFit fit;
   if (start) {
-    fit = fit_whole_wire(material, *start, material.squares(*start));
+    fit = fit_whole_wire(material, *start, material.sum_of_squares(*start));
   } else {
     const MaterialProfiles::Search found = material.search();
     fit = fits_a_wire(options)

@@ -238,14 +238,14 @@ class ForceModelFitter {
 
   /// Returns the c_b with the least deviation of the cases [begin, end).
   [[nodiscard]] double fitted_c_b(double centre, std::size_t begin, std::size_t end) const {
-    constexpr double no_value = 1e3;
+    constexpr double undefined_value_replacement = 1e3;
     const Function misfit = [&](double log_c_b) {
       double sum = 0;
       for (std::size_t i = begin; i < end; ++i) {
         sum += std::pow(cases_[i].chain_deviation(settings_, std::exp(log_c_b), options_.solve), 2);
       }
       // Brent's method interpolates, so an undefined value is replaced by a large one.
-      return std::min(sum / static_cast<double>(end - begin), no_value);
+      return std::min(sum / static_cast<double>(end - begin), undefined_value_replacement);
     };
     constexpr int steps_per_decade = 4;
     Scan values;
@@ -253,7 +253,8 @@ class ForceModelFitter {
       const double reach = decades * std::log(10.0);
       values = scan(misfit, centre - reach, centre + reach, 2 * decades * steps_per_decade);
       // If no c_b gives a shape, a wider range does not help.
-      if (values.is_bracketed() || !(values.value[values.best()] < no_value)) break;
+      if (values.is_bracketed() || !(values.value[values.best()] < undefined_value_replacement))
+        break;
     }
     return std::exp(minimum_near(misfit, values, 1e-6).x);
   }
@@ -299,7 +300,7 @@ class ForceModelFitter {
     force_model::ModeBounds bounds = modes();
     bounds.fastest *= mode_margin;
     settings_.l_s = segment_length(settings_.points) / 4;
-    constexpr int attempts = 5;
+    constexpr int most_attempts = 5;
     for (int attempt = 1;; ++attempt) {
       const force_model::HeavyBall ball = force_model::heavy_ball(bounds);
       settings_.c_F = ball.c_F;
@@ -307,7 +308,7 @@ class ForceModelFitter {
       try {
         return step_all();
       } catch (const ConvergenceError&) {
-        if (attempt == attempts) throw;
+        if (attempt == most_attempts) throw;
         bounds.fastest *= 2;
       }
     }
@@ -365,13 +366,15 @@ ForceModelFit fit_force_model(const std::vector<Scene>& scenes, const std::vecto
   return ForceModelFitter(scenes, holdouts, options).run();
 }
 
-bool ForceModelFit::reached() const { return std::max(worst(), worst_holdout()) <= target; }
+bool ForceModelFit::reaches_target() const {
+  return std::max(largest_deviation(), largest_holdout_deviation()) <= target;
+}
 
-double ForceModelFit::worst() const {
+double ForceModelFit::largest_deviation() const {
   return largest_of(stepped_rms_over_length, 0, stepped_rms_over_length.size() - holdouts);
 }
 
-double ForceModelFit::worst_holdout() const {
+double ForceModelFit::largest_holdout_deviation() const {
   const std::size_t all = stepped_rms_over_length.size();
   return largest_of(stepped_rms_over_length, all - holdouts, all);
 }

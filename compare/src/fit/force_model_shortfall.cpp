@@ -59,7 +59,7 @@ std::string stretch_shortfall(const ForceModelFit& fit, double stretch) {
 
 std::vector<std::string> target_shortfall_reasons(const ForceModelFit& fit) {
   std::vector<std::string> reasons;
-  if (fit.reached()) return reasons;
+  if (fit.reaches_target()) return reasons;
   const double segments = worst_of_segments(fit);
   const double stretch =
       *std::max_element(fit.stretch_rms_over_length.begin(), fit.stretch_rms_over_length.end());

@@ -221,7 +221,7 @@ double ShapeMisfit::operator()(const MaterialPoint& material) {
       sum = std::numeric_limits<double>::infinity();
       break;
     }
-    sum += measured_.squares(i, shape->equilibrium);
+    sum += measured_.sum_of_squares(i, shape->equilibrium);
     if (shape->penetration > 0) {
       unverified_.emplace_back(
           Unverified{material, i, shape->penetration, shape->equilibrium.message}, 0);
@@ -246,13 +246,13 @@ std::shared_ptr<const ShapeMisfit::Solved> ShapeMisfit::nearer_equilibrium(
         measured_.solve_near(i, scene_with_material(scenes_[i], material), now->equilibrium);
   }
   double least =
-      now ? measured_.squares(i, now->equilibrium) : std::numeric_limits<double>::infinity();
+      now ? measured_.sum_of_squares(i, now->equilibrium) : std::numeric_limits<double>::infinity();
   std::shared_ptr<const Solved> result;
   for (const std::shared_ptr<Solved>& other : others) {
     if (!energy_model::succeeded(other->equilibrium.status)) continue;
-    const double squares = measured_.squares(i, other->equilibrium);
-    if (!(squares < 0.99 * least - std::pow(1e-6 * scenes_[i].length, 2))) continue;
-    least = squares;
+    const double sum_of_squares = measured_.sum_of_squares(i, other->equilibrium);
+    if (!(sum_of_squares < 0.99 * least - std::pow(1e-6 * scenes_[i].length, 2))) continue;
+    least = sum_of_squares;
     result = other;
   }
   return result;

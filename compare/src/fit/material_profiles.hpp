@@ -122,7 +122,7 @@ class MaterialProfiles {
   [[nodiscard]] LogProfile over_density();
 
   /// Returns the sum of squares [m^2].
-  [[nodiscard]] double squares(const MaterialPoint& material) { return misfit_(material); }
+  [[nodiscard]] double sum_of_squares(const MaterialPoint& material) { return misfit_(material); }
   /// Returns the sum of squares with the best density [m^2].
   [[nodiscard]] double least_squares(double log_modulus) { return density_at(log_modulus).value; }
 

@@ -72,12 +72,12 @@ class ProgramFolder {
 
 /// Returns the last line that is not blank, as a message shows it.
 std::string last_line(const std::string& text) {
-  constexpr std::size_t most = 200;
+  constexpr std::size_t most_message_bytes = 200;
   std::size_t end = text.find_last_not_of(" \t\r\n");
   if (end == std::string::npos) return "";
   const std::size_t before = text.find_last_of('\n', end);
   const std::size_t begin = before == std::string::npos ? 0 : before + 1;
-  return display(text.substr(begin, std::min(end + 1 - begin, most)));
+  return display(text.substr(begin, std::min(end + 1 - begin, most_message_bytes)));
 }
 
 /// Returns ": " and the last line of a program's standard error, or an empty string if the file
@@ -110,10 +110,10 @@ void require_end(const Scene& scene, const Shape& aligned, bool has_arc_lengths,
 }  // namespace
 
 bool is_program_name(const std::string& name) {
-  constexpr std::string_view letters =
+  constexpr std::string_view name_characters =
       "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789_.-+";
   return !name.empty() && name != "." && name != ".." &&
-         name.find_first_not_of(letters) == std::string::npos;
+         name.find_first_not_of(name_characters) == std::string::npos;
 }
 
 ForeignProgram parse_foreign_program(const std::string& text) {
@@ -173,8 +173,8 @@ SimulatorRun run_on_document(
   const ChildOutcome outcome = run_child(words, {.error = folder.file("stderr")}, time_limit);
   SimulatorRun result{.points = points, .seconds = outcome.seconds, .too_long = outcome.too_long};
   const auto refuses = [&] {
-    constexpr int refusal = 3;
-    return outcome.exit_status == refusal ||
+    constexpr int unsupported_exit_status = 3;
+    return outcome.exit_status == unsupported_exit_status ||
            last_words(folder.file("stderr")).starts_with(": not supported");
   };
   if (!outcome.problem.empty()) {

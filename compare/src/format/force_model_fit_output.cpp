@@ -60,12 +60,12 @@ Json force_model_json(const ForceModelFit& fit) {
             {"l_s", json_or_null(s.l_s)}}},
           {"order_of_convergence", fit.order > 0 ? Json(fit.order) : Json(nullptr)},
           {"target", fit.target},
-          {"reached", fit.reached()},
+          {"reached", fit.reaches_target()},
           {"why_missed", fit.shortfall_reasons()},
           {"deviation",
-           {{"worst_rms_over_length", fit.worst()},
+           {{"worst_rms_over_length", fit.largest_deviation()},
             {"worst_holdout_rms_over_length",
-             fit.holdouts > 0 ? Json(fit.worst_holdout()) : Json(nullptr)}}},
+             fit.holdouts > 0 ? Json(fit.largest_holdout_deviation()) : Json(nullptr)}}},
           {"scenes", std::move(scenes)}};
 }
 
@@ -89,10 +89,11 @@ std::string force_model_csv(const ForceModelFit& fit) {
 compare::Document force_model_document(const ForceModelFit& fit, bool target_was_given) {
   compare::Document document{.json = force_model_json(fit)};
   std::string& out = document.head;
-  append(out, "worst {}", percent(fit.worst()));
-  if (fit.holdouts > 0) append(out, ", of the hold-out scenes {}", percent(fit.worst_holdout()));
+  append(out, "worst {}", percent(fit.largest_deviation()));
+  if (fit.holdouts > 0)
+    append(out, ", of the hold-out scenes {}", percent(fit.largest_holdout_deviation()));
   append(out, " of l (RMS): the {} of {} is {}\n", target_was_given ? "target" : "default target",
-         percent(fit.target), fit.reached() ? "reached" : "not reached");
+         percent(fit.target), fit.reaches_target() ? "reached" : "not reached");
   for (const std::string& reason : fit.shortfall_reasons()) {
     append(out, "  {}\n", compare::wrap(reason, 2, 100));
   }
@@ -122,7 +123,8 @@ std::string force_model_toml(const ForceModelFit& fit) {
     append(out, "#   {} (Gamma = {:.4g}): RMS deviation {} of the length{}\n", name, fit.gammas[i],
            percent(fit.stepped_rms_over_length[i]), is_holdout(fit, i) ? ", held out" : "");
   }
-  append(out, "# Target {}: {}.\n", percent(fit.target), fit.reached() ? "reached" : "not reached");
+  append(out, "# Target {}: {}.\n", percent(fit.target),
+         fit.reaches_target() ? "reached" : "not reached");
   append(out, "# dlo reads it with --parameters. Lengths in m, forces in N.\n\n[force_model]\n");
   append(out, "law = \"{}\"\nbookkeeping = \"{}\"\n", compare::to_string(s.law),
          compare::to_string(s.bookkeeping));

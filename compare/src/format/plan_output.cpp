@@ -17,7 +17,7 @@ Json plan_json(const compare::Plan& plan) {
   });
   // A missing bound, which is infinity, is null in JSON.
   Json neglected = json_list(plan.neglected, [&](const compare::Neglected& item) -> Json {
-    return {{"what", item.what},
+    return {{"what", item.name},
             {"by_models", item.models},
             {"bound_m", item.bound_m},
             {"why", item.why}};

@@ -57,7 +57,7 @@ class FollowedState {
 
   /// Returns the smallest eigenvalue of the second variation; NaN beyond the modulus at which the
   /// equilibrium ceases to exist, or if the solver did not compute it.
-  [[nodiscard]] double curvature(double log_ratio) {
+  [[nodiscard]] double smallest_eigenvalue(double log_ratio) {
     if (!std::isfinite((*this)(log_ratio))) return NAN;
     return known_.at(log_ratio).state.smallest_eigenvalue;
   }
@@ -182,7 +182,7 @@ double rms_distance_from_straight(const Scene& scene, const energy_model::Equili
 bool is_at_bifurcation(FollowedState& state, double log_ratio) {
   // The distance from its end to which an equilibrium is followed.
   constexpr double offset = 2 * least_step;
-  constexpr double vanishing = 0.25;
+  constexpr double least_eigenvalue_share = 0.25;
   const double low = log_ratio - offset;
   const double high = log_ratio + offset;
   // Beyond the range of moduli nothing is known.
@@ -190,8 +190,9 @@ bool is_at_bifurcation(FollowedState& state, double log_ratio) {
       low >= std::log(smallest_modulus_ratio) && high <= std::log(largest_modulus_ratio);
   if (!in_range) return false;
   if (!std::isfinite(state(low)) || !std::isfinite(state(high))) return true;
-  return std::abs(state.curvature(log_ratio)) <
-         vanishing * std::min(state.curvature(low), state.curvature(high));
+  return std::abs(state.smallest_eigenvalue(log_ratio)) <
+         least_eigenvalue_share *
+             std::min(state.smallest_eigenvalue(low), state.smallest_eigenvalue(high));
 }
 
 EffectiveModulus search(FollowedState& mean_square, double resolution) {

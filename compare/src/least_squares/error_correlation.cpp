@@ -89,17 +89,17 @@ double deviance(const Eigen::VectorXd& residual, const Eigen::MatrixXd& basis,
   const Whitened white = whitened(std::move(columns), step, covariance);
   const auto design = white.columns.leftCols(rank);
   const Eigen::VectorXd errors = white.columns.col(rank);
-  double squares = errors.squaredNorm();
+  double sum_of_squares = errors.squaredNorm();
   double log_determinant = white.log_determinant;
   if (rank > 0) {
     const Eigen::LLT<Eigen::MatrixXd> normal(design.transpose() * design);
     const Eigen::VectorXd moment = design.transpose() * errors;
-    squares -= moment.dot(normal.solve(moment));
+    sum_of_squares -= moment.dot(normal.solve(moment));
     const Eigen::MatrixXd factor = normal.matrixL();
     log_determinant += 2 * factor.diagonal().array().log().sum();
   }
   const auto freedom = static_cast<double>(basis.rows() - rank);
-  return freedom * std::log(squares / freedom) + log_determinant;
+  return freedom * std::log(sum_of_squares / freedom) + log_determinant;
 }
 
 /// A covariance of the search grid, and its deviance.
@@ -224,12 +224,12 @@ std::vector<LikelyCovariance> likely_covariances(const std::vector<ResidualSerie
   if (all.empty()) return {{ErrorCovariance(), 1}};
   double least = INFINITY;
   for (const Candidate& one : all) least = std::min(least, one.deviance);
-  constexpr double least_likely = 1e-3;
+  constexpr double least_relative_likelihood = 1e-3;
   std::vector<LikelyCovariance> result;
   double sum = 0;
   for (const Candidate& one : all) {
     const double weight = std::exp((least - one.deviance) / 2);
-    if (!(weight >= least_likely)) continue;
+    if (!(weight >= least_relative_likelihood)) continue;
     result.push_back({one.covariance, weight});
     sum += weight;
   }
@@ -267,9 +267,9 @@ CorrelationEffect correlation_effect(const std::vector<ResidualSeries>& series, 
   const Eigen::MatrixXd inner = basis.transpose() * moved;
   // Traces of P C and P C P C, with the projector P = 1 - Q Q' onto the residuals.
   const double mean = count - inner.trace();
-  const double squares =
+  const double sum_of_squares =
       squared_entries(all.step, covariance) - 2 * moved.squaredNorm() + inner.squaredNorm();
-  result.degrees_of_freedom = std::clamp(mean * mean / squares, 1.0, count - rank);
+  result.degrees_of_freedom = std::clamp(mean * mean / sum_of_squares, 1.0, count - rank);
   result.residual_factor = mean / (count - rank);
   Eigen::MatrixXd others(basis.rows(), all.design.cols() - 1);
   others << all.design.leftCols(column), all.design.rightCols(all.design.cols() - 1 - column);

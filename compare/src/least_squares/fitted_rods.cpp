@@ -93,10 +93,10 @@ FittedRods::State FittedRods::state(const Eigen::VectorXd& values) {
   State result;
   for (std::size_t i = 0; i < measured_.size(); ++i) {
     result.rods.push_back(solve(i, values));
-    result.squares.push_back(INFINITY);
+    result.sum_of_squares.push_back(INFINITY);
     if (!result.rods[i]) continue;
     last_[i] = result.rods[i];
-    result.squares[i] = measured_.squares(i, *result.rods[i]);
+    result.sum_of_squares[i] = measured_.sum_of_squares(i, *result.rods[i]);
   }
   return result;
 }

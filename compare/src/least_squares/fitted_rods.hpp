@@ -73,7 +73,7 @@ class FittedRods {
   /// Rods at some values, and the sum of squared distances of each shape from its rod [m^2].
   struct State {
     Rods rods;
-    std::vector<double> squares;  // infinite without a rod
+    std::vector<double> sum_of_squares;  // infinite without a rod
   };
   /// Solves all shapes at some values and keeps the rods as residuals() does.
   [[nodiscard]] State state(const Eigen::VectorXd& values);

@@ -24,9 +24,9 @@ constexpr double information_tolerance = 1e-12;
 constexpr double least_part = 1e-3;
 
 Eigen::MatrixXd information_of(const LinearFit& fit, double variance,
-                               const Eigen::VectorXd& before) {
+                               const Eigen::VectorXd& prior_inverse_deviations) {
   Eigen::MatrixXd information = fit.design.transpose() * fit.design / variance;
-  information.diagonal() += before.cwiseAbs2();
+  information.diagonal() += prior_inverse_deviations.cwiseAbs2();
   return information;
 }
 
@@ -40,12 +40,13 @@ constexpr double deviance_tolerance = 1e-5;
 /// Returns the step of all numbers except the first to the least deviance, if the first one moves
 /// by `first_step`.
 /// @param gradient  result of log_posterior_gradient(), of all numbers
-Eigen::VectorXd step_of_others(const LinearFit& fit, double variance, const Eigen::VectorXd& before,
+Eigen::VectorXd step_of_others(const LinearFit& fit, double variance,
+                               const Eigen::VectorXd& prior_inverse_deviations,
                                const Eigen::VectorXd& gradient, double first_step) {
-  const Eigen::Index others = before.size() - 1;
+  const Eigen::Index others = prior_inverse_deviations.size() - 1;
   const auto of_others = fit.design.rightCols(others);
   Eigen::MatrixXd information = of_others.transpose() * of_others / variance;
-  information.diagonal() += before.tail(others).cwiseAbs2();
+  information.diagonal() += prior_inverse_deviations.tail(others).cwiseAbs2();
   const Eigen::VectorXd left =
       gradient.tail(others) - of_others.transpose() * fit.design.col(0) / variance * first_step;
   return information.completeOrthogonalDecomposition().solve(left);
@@ -72,17 +73,20 @@ LinearFit linear_fit(const std::vector<ResidualSeries>& series, const ErrorCovar
 
 }  // namespace
 
-Eigen::MatrixXd posterior(const LinearFit& fit, double variance, const Eigen::VectorXd& before) {
-  return information_of(fit, variance, before).completeOrthogonalDecomposition().pseudoInverse();
+Eigen::MatrixXd posterior(const LinearFit& fit, double variance,
+                          const Eigen::VectorXd& prior_inverse_deviations) {
+  return information_of(fit, variance, prior_inverse_deviations)
+      .completeOrthogonalDecomposition()
+      .pseudoInverse();
 }
 
 Eigen::MatrixXd sandwich_covariance(const std::vector<ResidualSeries>& series, const LinearFit& fit,
-                                    double weight, const Eigen::VectorXd& before,
+                                    double weight, const Eigen::VectorXd& prior_inverse_deviations,
                                     const ErrorCovariance& errors, double variance) {
-  const Eigen::MatrixXd inverse = posterior(fit, weight, before);
+  const Eigen::MatrixXd inverse = posterior(fit, weight, prior_inverse_deviations);
   Eigen::MatrixXd scatter = covariance_products(series, fit.design, errors);
   scatter *= variance / (weight * weight);
-  scatter.diagonal() += before.cwiseAbs2();
+  scatter.diagonal() += prior_inverse_deviations.cwiseAbs2();
   return inverse * scatter * inverse;
 }
 
@@ -96,16 +100,16 @@ VarianceEstimate variance_under(const std::vector<ResidualSeries>& series,
 }
 
 std::vector<bool> undetermined_numbers(const LinearFit& fit, double variance,
-                                       const Eigen::VectorXd& before) {
-  const Eigen::MatrixXd information = information_of(fit, variance, before);
+                                       const Eigen::VectorXd& prior_inverse_deviations) {
+  const Eigen::MatrixXd information = information_of(fit, variance, prior_inverse_deviations);
   const Eigen::VectorXd deviations =
       information.diagonal().unaryExpr([](double x) { return x > 0 ? 1 / std::sqrt(x) : 0.0; });
   const Eigen::MatrixXd scaled = deviations.asDiagonal() * information * deviations.asDiagonal();
   const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> eigen(scaled);
-  std::vector<bool> result(static_cast<std::size_t>(before.size()), false);
-  for (Eigen::Index k = 0; k < before.size(); ++k) {
+  std::vector<bool> result(static_cast<std::size_t>(prior_inverse_deviations.size()), false);
+  for (Eigen::Index k = 0; k < prior_inverse_deviations.size(); ++k) {
     if (eigen.eigenvalues()[k] > information_tolerance) continue;
-    for (Eigen::Index i = 0; i < before.size(); ++i) {
+    for (Eigen::Index i = 0; i < prior_inverse_deviations.size(); ++i) {
       if (std::abs(eigen.eigenvectors()(i, k)) > least_part) {
         result[static_cast<std::size_t>(i)] = true;
       }
@@ -115,28 +119,33 @@ std::vector<bool> undetermined_numbers(const LinearFit& fit, double variance,
 }
 
 Eigen::VectorXd log_posterior_gradient(const LinearFit& fit, double variance,
-                                       const Eigen::VectorXd& before,
+                                       const Eigen::VectorXd& prior_inverse_deviations,
                                        const Eigen::VectorXd& values) {
-  return fit.design.transpose() * fit.residual / variance - before.cwiseAbs2().cwiseProduct(values);
+  return fit.design.transpose() * fit.residual / variance -
+         prior_inverse_deviations.cwiseAbs2().cwiseProduct(values);
 }
 
-double log_determinant(const LinearFit& fit, double variance, const Eigen::VectorXd& before) {
-  const Eigen::Index others = before.size() - 1;
+double log_determinant(const LinearFit& fit, double variance,
+                       const Eigen::VectorXd& prior_inverse_deviations) {
+  const Eigen::Index others = prior_inverse_deviations.size() - 1;
   const Eigen::ColPivHouseholderQR<Eigen::MatrixXd> information(
-      information_of(fit, variance, before).bottomRightCorner(others, others));
+      information_of(fit, variance, prior_inverse_deviations).bottomRightCorner(others, others));
   return information.matrixQR().diagonal().head(information.rank()).array().abs().log().sum();
 }
 
 GaussNewton::GaussNewton(FittedRods& rods, Eigen::VectorXd values,
                          const GaussNewtonOptions& options)
-    : rods_(rods), options_(options), before_(values.size()), values_(std::move(values)) {
-  for (Eigen::Index k = 0; k < before_.size(); ++k) {
-    before_[k] = 1 / rods.unknowns()[static_cast<std::size_t>(k)].prior_deviation;
+    : rods_(rods),
+      options_(options),
+      prior_inverse_deviations_(values.size()),
+      values_(std::move(values)) {
+  for (Eigen::Index k = 0; k < prior_inverse_deviations_.size(); ++k) {
+    prior_inverse_deviations_[k] = 1 / rods.unknowns()[static_cast<std::size_t>(k)].prior_deviation;
   }
 }
 
 double GaussNewton::penalty(const Eigen::VectorXd& values) const {
-  return values.cwiseProduct(before_).squaredNorm();
+  return values.cwiseProduct(prior_inverse_deviations_).squaredNorm();
 }
 
 double GaussNewton::deviance() const {
@@ -158,21 +167,22 @@ void GaussNewton::measure_variance() {
     return;
   }
   const double floor = std::pow(options_.least_noise, 2);
-  const double squares = linear_.residual.squaredNorm();
+  const double sum_of_squares = linear_.residual.squaredNorm();
   if (!(variance_ > 0)) {
-    variance_ = std::max(floor, squares / static_cast<double>(linear_.freedom));
+    variance_ = std::max(floor, sum_of_squares / static_cast<double>(linear_.freedom));
   }
   // A number that is determined by its prior does not reduce the degrees of freedom.
-  const Eigen::VectorXd kept =
-      posterior(linear_, weight(), before_).diagonal().cwiseProduct(before_.cwiseAbs2());
-  freedom_ = static_cast<double>(linear_.freedom - before_.size()) + kept.sum();
+  const Eigen::VectorXd kept = posterior(linear_, weight(), prior_inverse_deviations_)
+                                   .diagonal()
+                                   .cwiseProduct(prior_inverse_deviations_.cwiseAbs2());
+  freedom_ = static_cast<double>(linear_.freedom - prior_inverse_deviations_.size()) + kept.sum();
   if (!(freedom_ >= 1)) {
     throw InputError(
         fmt::format("calibrate: {} measured numbers in addition to the frames for {} unknown "
                     "parameters (allowed: more measured numbers, so more points, or a given noise)",
-                    linear_.freedom, before_.size()));
+                    linear_.freedom, prior_inverse_deviations_.size()));
   }
-  variance_ = std::max(floor, squares / freedom_);
+  variance_ = std::max(floor, sum_of_squares / freedom_);
 }
 
 bool GaussNewton::descend() {
@@ -184,7 +194,7 @@ bool GaussNewton::descend() {
     here_ = rods_.rods();
     linear_ = linear_fit(series_, {}, rods_.measured().frame_columns());
     measure_variance();
-    posterior_ = posterior(linear_, weight(), before_);
+    posterior_ = posterior(linear_, weight(), prior_inverse_deviations_);
     // All results must belong to the final values, so no step is made after the last linearisation.
     if (i == most_steps) return true;
     Eigen::VectorXd step = next_step();
@@ -211,9 +221,9 @@ bool GaussNewton::descend() {
 /// its longest step is not identified: its deviance is a flat valley, in which even small shares of
 /// its large deviation move it far. There the iteration ends earlier.
 double GaussNewton::last_step(double first_deviation) const {
-  constexpr double last_in_valley = 0.01;
+  constexpr double valley_step_tolerance = 0.01;
   const bool in_valley = first_deviation > rods_.unknowns().front().longest_step;
-  return in_valley ? std::max(last_in_valley, options_.last_step) : options_.last_step;
+  return in_valley ? std::max(valley_step_tolerance, options_.last_step) : options_.last_step;
 }
 
 /// Returns the step to the least deviance of the linear problem, with the first number limited to
@@ -221,7 +231,8 @@ double GaussNewton::last_step(double first_deviation) const {
 /// others with it.
 Eigen::VectorXd GaussNewton::next_step() const {
   const std::vector<Unknown>& unknowns = rods_.unknowns();
-  const Eigen::VectorXd down = log_posterior_gradient(linear_, weight(), before_, values_);
+  const Eigen::VectorXd down =
+      log_posterior_gradient(linear_, weight(), prior_inverse_deviations_, values_);
   Eigen::VectorXd step = posterior_ * down;
   const double longest = unknowns.front().longest_step;
   const double bounded = std::clamp(values_[0] + std::clamp(step[0], -longest, longest),
@@ -229,7 +240,8 @@ Eigen::VectorXd GaussNewton::next_step() const {
   if (values_[0] + step[0] != bounded) {
     step[0] = bounded - values_[0];
     if (step.size() > 1) {
-      step.tail(step.size() - 1) = step_of_others(linear_, weight(), before_, down, step[0]);
+      step.tail(step.size() - 1) =
+          step_of_others(linear_, weight(), prior_inverse_deviations_, down, step[0]);
     }
   }
   double share = 1;
@@ -243,7 +255,7 @@ Eigen::VectorXd GaussNewton::next_step() const {
 }
 
 double GaussNewton::marginal_slope() {
-  const Eigen::Index others = before_.size() - 1;
+  const Eigen::Index others = prior_inverse_deviations_.size() - 1;
   const double offset = std::sqrt(posterior_(0, 0)) / 2;
   if (others == 0 || !(offset > 0) || !std::isfinite(offset)) return 0;
   double difference = 0;
@@ -253,7 +265,7 @@ double GaussNewton::marginal_slope() {
         rods_.residuals(conditional_optimum(values_[0] + side * offset), FittedRods::Columns::all);
     if (!series) return 0;
     const LinearFit shifted_fit = linear_fit(*series, {}, rods_.measured().frame_columns());
-    difference += side * log_determinant(shifted_fit, weight(), before_);
+    difference += side * log_determinant(shifted_fit, weight(), prior_inverse_deviations_);
   }
   return difference / (2 * offset);
 }
@@ -263,7 +275,7 @@ Eigen::VectorXd GaussNewton::conditional_optimum(double first) const {
 }
 
 double GaussNewton::profile(double first) {
-  const Eigen::Index others = before_.size() - 1;
+  const Eigen::Index others = prior_inverse_deviations_.size() - 1;
   Eigen::VectorXd values = conditional_optimum(first);
   double least = INFINITY;
   LinearFit chord = linear_;
@@ -277,8 +289,10 @@ double GaussNewton::profile(double first) {
     if (!(here < least)) break;
     least = here;
     if (others == 0) break;
-    const Eigen::VectorXd down = log_posterior_gradient(chord, weight(), before_, values);
-    const Eigen::VectorXd step = step_of_others(chord, weight(), before_, down, 0);
+    const Eigen::VectorXd down =
+        log_posterior_gradient(chord, weight(), prior_inverse_deviations_, values);
+    const Eigen::VectorXd step =
+        step_of_others(chord, weight(), prior_inverse_deviations_, down, 0);
     if (step.dot(down.tail(others)) < deviance_tolerance) break;
     values.tail(others) += step;
   }

@@ -20,20 +20,20 @@ struct LinearFit {
 /// Returns the covariance of the numbers after the fit. For numbers that are undetermined_numbers()
 /// it is that of the pseudoinverse, which is no variance.
 /// @param variance  of the errors
-/// @param before  1 over the prior standard deviation of each number about zero
+/// @param prior_inverse_deviations  1 over the prior standard deviation of each number about zero
 [[nodiscard]] Eigen::MatrixXd posterior(const LinearFit& fit, double variance,
-                                        const Eigen::VectorXd& before);
+                                        const Eigen::VectorXd& prior_inverse_deviations);
 
 /// Returns the covariance of the numbers after a least squares fit that assumes independent errors,
 /// if the errors have another covariance (sandwich estimator).
 /// @param series    residual series of the fit
 /// @param weight    variance by which the squares of the fit were divided
-/// @param before    inverse standard deviations of the prior
+/// @param prior_inverse_deviations    inverse standard deviations of the prior
 /// @param errors    covariance of the errors, divided by `variance`
 /// @param variance  factor on `errors`
 [[nodiscard]] Eigen::MatrixXd sandwich_covariance(const std::vector<ResidualSeries>& series,
                                                   const LinearFit& fit, double weight,
-                                                  const Eigen::VectorXd& before,
+                                                  const Eigen::VectorXd& prior_inverse_deviations,
                                                   const ErrorCovariance& errors, double variance);
 
 /// Variance of errors of a given correlation, estimated from the residuals of generalised least
@@ -47,19 +47,19 @@ struct VarianceEstimate {
 
 /// Returns for each number whether neither the points nor priors determine it, alone or in
 /// combination with others. The variance of such a number is infinite.
-[[nodiscard]] std::vector<bool> undetermined_numbers(const LinearFit& fit, double variance,
-                                                     const Eigen::VectorXd& before);
+[[nodiscard]] std::vector<bool> undetermined_numbers(
+    const LinearFit& fit, double variance, const Eigen::VectorXd& prior_inverse_deviations);
 
 /// Returns the gradient of the log posterior density by the numbers, which is minus half that of
 /// the deviance: the sum of squares divided by the variance, plus the priors' terms.
-[[nodiscard]] Eigen::VectorXd log_posterior_gradient(const LinearFit& fit, double variance,
-                                                     const Eigen::VectorXd& before,
-                                                     const Eigen::VectorXd& values);
+[[nodiscard]] Eigen::VectorXd log_posterior_gradient(
+    const LinearFit& fit, double variance, const Eigen::VectorXd& prior_inverse_deviations,
+    const Eigen::VectorXd& values);
 
 /// Returns the logarithm of the determinant of half the deviance's second derivatives by all
 /// numbers except the first, without those that neither points nor priors determine.
 [[nodiscard]] double log_determinant(const LinearFit& fit, double variance,
-                                     const Eigen::VectorXd& before);
+                                     const Eigen::VectorXd& prior_inverse_deviations);
 
 /// Options of the Gauss-Newton iteration.
 struct GaussNewtonOptions {
@@ -106,7 +106,9 @@ class GaussNewton {
   /// Returns the degrees of freedom of the residuals.
   [[nodiscard]] double freedom() const { return freedom_; }
   /// Returns 1 over the prior standard deviations, see posterior().
-  [[nodiscard]] const Eigen::VectorXd& before() const { return before_; }
+  [[nodiscard]] const Eigen::VectorXd& prior_inverse_deviations() const {
+    return prior_inverse_deviations_;
+  }
   /// Returns the sum of squares divided by the weight, plus the priors' terms.
   [[nodiscard]] double deviance() const;
 
@@ -135,7 +137,7 @@ class GaussNewton {
 
   FittedRods& rods_;
   GaussNewtonOptions options_;
-  Eigen::VectorXd before_;
+  Eigen::VectorXd prior_inverse_deviations_;
   Eigen::VectorXd values_;
   std::optional<double> given_weight_;
   double variance_ = 0;

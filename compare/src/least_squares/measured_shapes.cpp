@@ -236,7 +236,8 @@ energy_model::Equilibrium MeasuredShapes::solve(const energy_model::Problem& pro
   }
 }
 
-double MeasuredShapes::squares(std::size_t shape, const energy_model::Equilibrium& rod) const {
+double MeasuredShapes::sum_of_squares(std::size_t shape,
+                                      const energy_model::Equilibrium& rod) const {
   return alignment(shape, rod).mean_square * static_cast<double>(shapes_[shape].aligner.points());
 }
 

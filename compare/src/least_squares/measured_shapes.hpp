@@ -86,7 +86,8 @@ class MeasuredShapes {
     return shapes_[shape].aligner.align(curve(shape, rod));
   }
   /// Returns the sum of a shape's squared distances from a rod [m^2].
-  [[nodiscard]] double squares(std::size_t shape, const energy_model::Equilibrium& rod) const;
+  [[nodiscard]] double sum_of_squares(std::size_t shape,
+                                      const energy_model::Equilibrium& rod) const;
 
   /// Returns the residuals of an aligned shape, points minus rod, with the derivatives by its own
   /// frame's coordinates and by the fitted numbers; other columns are zero. There is one series per

@@ -81,8 +81,8 @@ MjcfJoint read_mjcf_joint(const MjcfNode& node, const MjcfPose& at) {
   joint.type = types[node.choice("type", {"hinge", "ball", "free", "slide"})];
   joint.place = at * node.vector("pos").value_or(Eigen::Vector3d::Zero());
   const Eigen::Vector3d axis = node.vector("axis").value_or(Eigen::Vector3d::UnitZ());
-  constexpr double least = 1e-10;
-  if (!(axis.norm() > least)) node.fail("axis", "has no direction");
+  constexpr double least_axis_norm = 1e-10;
+  if (!(axis.norm() > least_axis_norm)) node.fail("axis", "has no direction");
   joint.axis = at.linear() * axis.normalized();
   joint.stiffness = node.number("stiffness").value_or(0);
   if (!(joint.stiffness >= 0)) node.fail("stiffness", "(allowed: 0 or more, in N m/rad)");

@@ -151,8 +151,8 @@ class ChainFinder {
     segment.at = chain_.length;
     segment.end = i + 1 < bodies.size() ? segment_start_in(bodies[i + 1], bodies[i])
                                         : end_of_last_segment(segment);
-    constexpr double shortest = 1e-9;
-    if (!(segment.length() > shortest)) {
+    constexpr double shortest_segment = 1e-9;
+    if (!(segment.length() > shortest_segment)) {
       fail(segment, "has no length: the next joint is at the same position (allowed: apart)");
     }
     chain_.length += segment.length();

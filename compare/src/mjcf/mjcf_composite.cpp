@@ -135,8 +135,8 @@ void add_mjcf_composite(const MjcfNode& node, const MjcfPose& at, std::size_t pa
   Quaterniond frame = Quaterniond::Identity();
   for (std::size_t i = 0; i < bodies; ++i) {
     const Vector3d edge = points[i + 1] - points[i];
-    constexpr double shortest = 1e-9;
-    if (!(edge.norm() > shortest)) {
+    constexpr double shortest_edge = 1e-9;
+    if (!(edge.norm() > shortest_edge)) {
       node.fail(fmt::format("has vertices {} and {} at one place (allowed: apart)", i + 1, i + 2));
     }
     frame = next_frame(frame, edge);

@@ -61,8 +61,8 @@ Vector3d read_size(const MjcfNode& node, Type type, std::size_t given) {
 /// Sets pose and half-length from two ends.
 void span(const MjcfNode& node, const Vector3d& from, const Vector3d& to, MjcfGeom& geom) {
   const Vector3d axis = to - from;
-  constexpr double shortest = 1e-12;
-  if (!(axis.norm() > shortest)) {
+  constexpr double shortest_geom = 1e-12;
+  if (!(axis.norm() > shortest_geom)) {
     node.fail("fromto", "has no length (allowed: two points that are apart)");
   }
   geom.pose.linear() =

@@ -253,7 +253,7 @@ SceneEnergies energies_of(const SolvedInstant& moment) {
   energy.gravity -= now.weight_between(0, now.length).dot(zero);
   for (const PointLoad& load : now.loads) energy.load -= load.force.dot(zero);
   energy.load -= now.distributed_between(0, now.length).dot(zero);
-  energy.load += moment.couples;
+  energy.load += moment.couple_potential_offset;
   return energy;
 }
 
@@ -327,7 +327,7 @@ void Branch::advance_to_frame(Passage& passage) {
         if (++accepted_steps == 2) step *= 2;
       } else {
         accepted_steps = 0;
-        passage.smaller = true;
+        passage.has_smaller_steps = true;
         step /= 2;
       }
       continue;
@@ -347,15 +347,15 @@ void Branch::advance_to_frame(Passage& passage) {
 /// is found there, at the frame.
 /// @return the step [frames]
 double Branch::leave_branch(double at, double rejected, Passage& passage) {
-  if (passage.kept) {
-    passage.kept = false;
+  if (passage.stayed_on_branch) {
+    passage.stayed_on_branch = false;
     passage.last_eigenvalue = now_.rod.smallest_eigenvalue;
-    passage.ended = true;
+    passage.end_was_observed = true;
     passage.released = 0;
     passage.released_bound = 0;
   }
-  passage.ended =
-      passage.ended && branch_ends_before((*last_samples_)[0], (*last_samples_)[1], rejected);
+  passage.end_was_observed = passage.end_was_observed &&
+                             branch_ends_before((*last_samples_)[0], (*last_samples_)[1], rejected);
   double step = rejected;
   SolvedInstant after{scene_at(at + step), {}};
   after.rod = solver_.follow(frame_problem(after.scene, obstacles_));
@@ -370,7 +370,8 @@ double Branch::leave_branch(double at, double rejected, Passage& passage) {
     after.rod = solver_.solve(frame_problem(after.scene, obstacles_));
   }
   if (energy_model::succeeded(after.rod.status)) {
-    after.couples = now_.couples + potential_shift_of_couples(now_, after);
+    after.couple_potential_offset =
+        now_.couple_potential_offset + potential_shift_of_couples(now_, after);
     const Work work = work_between(now_, after, step, obstacles_, changes_);
     const double grown = energies_of(after).total() - energies_of(now_).total();
     passage.work += work.done;
@@ -404,7 +405,8 @@ bool Branch::try_follow(Scene scene, double from, double step, Passage& passage)
   std::optional<Equilibrium> rod = solver_.try_follow(frame_problem(scene, obstacles_));
   if (!rod) return false;
   SolvedInstant after{std::move(scene), std::move(*rod)};
-  after.couples = now_.couples + potential_shift_of_couples(now_, after);
+  after.couple_potential_offset =
+      now_.couple_potential_offset + potential_shift_of_couples(now_, after);
   std::vector<Eigen::Vector3d> changes = changes_;
   const Work work = work_between(now_, after, step, obstacles_, changes);
   const double released = work.done - (energies_of(after).total() - energies_of(now_).total());
@@ -415,7 +417,7 @@ bool Branch::try_follow(Scene scene, double from, double step, Passage& passage)
   }
   changes_ = std::move(changes);
   passage.work += work.done;
-  if (passage.kept) {
+  if (passage.stayed_on_branch) {
     passage.released += released;
     passage.released_bound += work.bound + noise_;
   }

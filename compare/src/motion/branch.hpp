@@ -29,8 +29,8 @@ namespace dlo::compare {
 struct SolvedInstant {
   Scene scene;
   energy_model::Equilibrium rod;
-  double couples = 0;  ///< offset of the zero of the couples' potential since the first
-                       ///< frame [J]
+  double couple_potential_offset = 0;  ///< offset of the zero of the couples' potential since the
+                                       ///< first frame [J]
 };
 
 /// Returns energies with zeros that do not move with the grippers: those of gravity and forces are
@@ -39,13 +39,13 @@ struct SolvedInstant {
 
 /// How the rod reached a frame from the one before.
 struct Passage {
-  bool kept = true;  ///< it stayed on its branch: each shape is close to the one before, and the
-                     ///< energy balances
-  bool smaller = false;        ///< whether steps smaller than a frame were made
-  bool is_stationary = false;  ///< whether nothing moved
+  bool stayed_on_branch = true;  ///< it stayed on its branch: each shape is close to the one
+                                 ///< before, and the energy balances
+  bool has_smaller_steps = false;  ///< whether steps smaller than a frame were made
+  bool is_stationary = false;      ///< whether nothing moved
   /// If the branch was not kept: whether its end was observed, as loss of stability or as a
   /// vanishing contact force.
-  bool ended = false;
+  bool end_was_observed = false;
   /// Smallest eigenvalue of the last shape on a branch that was not kept, divided by EI/l [-].
   double last_eigenvalue = std::numeric_limits<double>::quiet_NaN();
   double work = 0;  ///< work of grippers and obstacles on the rod [J]

@@ -119,20 +119,20 @@ DynamicTrack dynamic_track(const Scene& scene, const Track& track, const TrackOp
         std::max(result.term_difference, rms(track.arc_length, difference) / scene.length);
   }
   add_errors(result.frames, result);
-  add_lag(track, scene.length, 1 / options.rates.frames, result);
+  add_lag(track, scene.length, 1 / options.rates.frame_rate, result);
   return result;
 }
 
 TrackResult follow(const Scene& scene, const TrackRequest& request, const Progress& progress) {
   TrackOptions options = request.options;
   options.rates = {
-      .frames = request.frame_rate.value_or(scene.track.frames),
-      .obstacles = request.obstacle_rate ? request.obstacle_rate : scene.track.obstacles,
-      .steps = request.step_rate.value_or(scene.track.steps)};
-  constexpr double most = 1e9;
-  const auto rate = [](double value) { return value > 0 && value <= most; };
-  if (!rate(options.rates.frames) || !rate(options.rates.steps) ||
-      !rate(options.rates.obstacles.value_or(1)) || options.samples < 2) {
+      .frame_rate = request.frame_rate.value_or(scene.track.frame_rate),
+      .obstacle_rate = request.obstacle_rate ? request.obstacle_rate : scene.track.obstacle_rate,
+      .step_rate = request.step_rate.value_or(scene.track.step_rate)};
+  constexpr double largest_rate = 1e9;
+  const auto rate = [](double value) { return value > 0 && value <= largest_rate; };
+  if (!rate(options.rates.frame_rate) || !rate(options.rates.step_rate) ||
+      !rate(options.rates.obstacle_rate.value_or(1)) || options.samples < 2) {
     throw InputError("track: out of range (allowed: rates > 0, up to 1e9 Hz, samples >= 2)");
   }
   if (request.damping) require_dynamic(scene);

@@ -96,7 +96,7 @@ ForceFrame ForceTrack::frame(const energy_model::Equilibrium& rod,
 
 Lag estimate_lag(const std::vector<Eigen::Matrix3Xd>& leader,
                  const std::vector<Eigen::Matrix3Xd>& follower, double step) {
-  constexpr std::size_t most_looks = 400;
+  constexpr std::size_t most_lag_samples = 400;
   const std::size_t count = leader.size();
   double moved = 0;
   for (const Eigen::Matrix3Xd& shape : leader) {
@@ -104,7 +104,7 @@ Lag estimate_lag(const std::vector<Eigen::Matrix3Xd>& leader,
   }
   const double rounding = 1e-9 * (leader.front().colwise() - leader.front().col(0)).norm();
   if (!(moved > rounding * rounding)) return {};
-  const std::size_t stride = std::max<std::size_t>(1, count / most_looks);
+  const std::size_t stride = std::max<std::size_t>(1, count / most_lag_samples);
   const auto squares_at = [&](std::size_t shift) {
     double sum = 0;
     for (std::size_t i = 0; i < count; i += stride) {

@@ -42,9 +42,9 @@ struct TrackErrors {
 
 /// Summary of the force model's frames, with their errors.
 struct ForceTrackSummary : TrackErrors {
-  std::string none;          ///< why there are no frames; empty if there are
-  long steps_per_frame = 0;  ///< number of steps of the stepper
-  double rest_error = 0;     ///< error of the first frame, at rest without lag, over the length [-]
+  std::string missing_reason;  ///< why there are no frames; empty if there are
+  long steps_per_frame = 0;    ///< number of steps of the stepper
+  double rest_error = 0;  ///< error of the first frame, at rest without lag, over the length [-]
   double median_seconds = 0;  ///< median duration of a frame's steps [s]
   /// Lag of the shapes: the shift of time that brings them nearest to the energy model's, and the
   /// remaining RMS distance over all frames, over the length. NaN if the motion is too small.

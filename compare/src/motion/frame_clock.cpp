@@ -35,8 +35,8 @@ FrameClock::FrameClock(const Scene& scene, const MotionPart& part, const TrackRa
     throw InputError(fmt::format("{}: from {:g} s to {:g} s: no time passes (allowed: to > from{})",
                                  scene.file, begin_, end_, poses));
   }
-  rate_ = rates.frames;
-  obstacle_rate_ = rates.obstacles.value_or(rate_);
+  rate_ = rates.frame_rate;
+  obstacle_rate_ = rates.obstacle_rate.value_or(rate_);
   constexpr double most_frames = 1e7;
   const double steps = std::ceil((end_ - begin_) * rate_ * (1 - 1e-12));
   if (!(steps < most_frames)) {

@@ -82,7 +82,7 @@ MotionMisfit::MotionMisfit(const Scene& scene, const std::vector<MarkerMotion>& 
   for (const MarkerMotion& motion : recordings) {
     require_recording(scene, motion);
     Recorded recorded{
-        .motion = &motion, .frames = {}, .used = 0, .deviation = {}, .first_mode = next};
+        .motion = &motion, .frames = {}, .used_frames = 0, .deviation = {}, .first_mode = next};
     for (std::size_t i = 0; i < motion.positions.size(); ++i) {
       const double time = motion.positions[i].time;
       if (recorded.frames.empty() || time > recorded.frames.back().time) {
@@ -104,7 +104,7 @@ void MotionMisfit::restrict_to(double seconds) {
   for (Recorded& recorded : recorded_) {
     const double last = recorded.frames.front().time + seconds * (1 + 1e-12);
     const auto is_used = [&](const Frame& frame) { return frame.time <= last; };
-    recorded.used = std::max<std::size_t>(
+    recorded.used_frames = std::max<std::size_t>(
         2, static_cast<std::size_t>(std::ranges::count_if(recorded.frames, is_used)));
   }
 }
@@ -172,31 +172,31 @@ Eigen::VectorXd MotionMisfit::simulated(const Scene& scene, const RodDamping& da
   const Recorded& recorded = recorded_[recording];
   ++simulations_;
   std::vector<double> times;
-  for (std::size_t k = 0; k < recorded.used; ++k) times.push_back(recorded.frames[k].time);
+  for (std::size_t k = 0; k < recorded.used_frames; ++k) times.push_back(recorded.frames[k].time);
   if (stages_) {
     stages_(fmt::format("simulation {}, {:.3g} s", simulations_, times.back() - times.front()));
   }
-  const FrameClock clock(
-      scene, {times.front(), times.back()},
-      {.frames = static_cast<double>(recorded.used - 1) / (times.back() - times.front())});
+  const FrameClock clock(scene, {times.front(), times.back()},
+                         {.frame_rate = static_cast<double>(recorded.used_frames - 1) /
+                                        (times.back() - times.front())});
   const MovingScene moving(scene, clock, damping, solve_, start(parameters, recording));
   const SimulatedMotion run =
       moving.run(times, terms_, recorded.deviation ? fit_tolerance : usual_step_tolerance);
   Eigen::VectorXd result = Eigen::VectorXd::Constant(recorded.coordinates(), scene.length);
   if (run.moved.frames.size() < times.size()) {
-    stopped_ = run.stop_reason();
+    stop_reason_ = run.stop_reason();
     return result;
   }
   terms_ = run.moved.terms;
   const std::vector<MarkerPosition>& positions = recorded.motion->positions;
-  for (std::size_t k = 0; k < recorded.used; ++k) {
+  for (std::size_t k = 0; k < recorded.used_frames; ++k) {
     std::vector<double> s;
     for (std::size_t i = recorded.frames[k].begin; i < recorded.frames[k].end; ++i) {
       s.push_back(*on_rod(positions[i].arc_length, scene.length));
     }
     const Eigen::Matrix3Xd points = run.moved.frames[k].sample(s).points;
     const Eigen::Matrix3Xd moved = points - run.moved.frames.front().sample(s).points;
-    movement_ = std::max(movement_, moved.colwise().norm().maxCoeff());
+    largest_displacement_ = std::max(largest_displacement_, moved.colwise().norm().maxCoeff());
     for (std::size_t i = 0; i < s.size(); ++i) {
       const std::size_t row = recorded.frames[k].begin + i;
       result.segment<3>(static_cast<Eigen::Index>(3 * row)) =
@@ -207,8 +207,8 @@ Eigen::VectorXd MotionMisfit::simulated(const Scene& scene, const RodDamping& da
 }
 
 Eigen::VectorXd MotionMisfit::residuals(const Eigen::VectorXd& parameters) {
-  stopped_.clear();
-  movement_ = 0;
+  stop_reason_.clear();
+  largest_displacement_ = 0;
   const Scene scene = scene_with(parameters);
   const RodDamping damped = damping(parameters);
   Eigen::VectorXd result(coordinates());
@@ -269,14 +269,14 @@ Eigen::VectorXd MotionMisfit::prior() const {
 LeastSquares least_squares(MotionMisfit& misfit, const Eigen::VectorXd& start, int most_steps,
                            Eigen::Index free) {
   LeastSquares at{.parameters = start, .residuals = misfit.residuals(start), .derivatives = {}};
-  if (!misfit.stopped().empty()) {
-    throw ConvergenceError("the moving rod stopped: " + misfit.stopped());
+  if (!misfit.stop_reason().empty()) {
+    throw ConvergenceError("the moving rod stopped: " + misfit.stop_reason());
   }
   const auto freedom =
       std::max<double>(1, static_cast<double>(at.residuals.size() - start.size() + free));
   // Predicted decrease of a step that changes no parameter by more than a seventh of its standard
   // deviation.
-  constexpr double small = 0.02;
+  constexpr double negligible_decrease = 0.02;
   // Derivatives are kept as long as the predicted decrease falls by this factor in a step.
   constexpr double least_reduction = 0.25;
   constexpr int most_tries = 8;
@@ -291,7 +291,7 @@ LeastSquares least_squares(MotionMisfit& misfit, const Eigen::VectorXd& start, i
     if (renew) at.derivatives = misfit.derivatives(at.parameters, at.residuals, free);
     const NormalEquations equations(at, misfit, free);
     const double decrease = equations.decrease();
-    at.converged = decrease < small;
+    at.converged = decrease < negligible_decrease;
     if (at.converged || step == most_steps) return at;
     const bool stale = !renew;
     renew = stale && !(decrease < least_reduction * before);
@@ -305,7 +305,7 @@ LeastSquares least_squares(MotionMisfit& misfit, const Eigen::VectorXd& start, i
     for (int attempt = 0; attempt < most_tries && !improved; ++attempt) {
       const Eigen::VectorXd parameters = equations.after(equations.step(damping), at.parameters);
       const Eigen::VectorXd residuals = misfit.residuals(parameters);
-      improved = misfit.stopped().empty() && equations.sum(residuals, parameters) < sum;
+      improved = misfit.stop_reason().empty() && equations.sum(residuals, parameters) < sum;
       if (improved) {
         for (Eigen::Index i = free; i < misfit.physical_parameters(); ++i) {
           if (!misfit.is_damping(i)) continue;
@@ -328,9 +328,9 @@ std::optional<MotionStart> recorded_start(const Scene& scene, const MarkerMotion
   const std::vector<MarkerMotion> recordings{recording};
   MotionMisfit misfit(scene, recordings, {}, damping, solve);
   if (misfit.parameters() == 0) return std::nullopt;
-  constexpr double window = 1;  // [s]
+  constexpr double shortest_stage_duration = 1;  // [s]
   constexpr int most_steps = 6;
-  misfit.restrict_to(std::max(window, misfit.natural_time()));
+  misfit.restrict_to(std::max(shortest_stage_duration, misfit.natural_time()));
   const LeastSquares found =
       least_squares(misfit, Eigen::VectorXd::Zero(misfit.parameters()), most_steps);
   return misfit.start(found.parameters, 0);

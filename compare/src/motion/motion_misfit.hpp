@@ -52,9 +52,9 @@ class MotionMisfit {
     return recorded_[recording].deviation.has_value();
   }
   /// Returns the largest displacement of a marker from its start in the last simulations [m].
-  [[nodiscard]] double movement() const { return movement_; }
+  [[nodiscard]] double largest_displacement() const { return largest_displacement_; }
   /// Returns why one of the last simulations ended early; empty if none did.
-  [[nodiscard]] const std::string& stopped() const { return stopped_; }
+  [[nodiscard]] const std::string& stop_reason() const { return stop_reason_; }
 
   /// Returns a physical parameter [SI]; for the stiffness its ratio to the scene's.
   [[nodiscard]] double value(std::size_t number, double log) const;
@@ -91,11 +91,11 @@ class MotionMisfit {
   struct Recorded {
     const MarkerMotion* motion = nullptr;
     std::vector<Frame> frames;
-    std::size_t used = 0;  ///< frames within the restriction
+    std::size_t used_frames = 0;  ///< frames within the restriction
     std::optional<StartDeviation> deviation;
     Eigen::Index first_mode = 0;  ///< among the parameters
     [[nodiscard]] Eigen::Index coordinates() const {
-      return static_cast<Eigen::Index>(3 * frames[used - 1].end);
+      return static_cast<Eigen::Index>(3 * frames[used_frames - 1].end);
     }
   };
 
@@ -112,8 +112,8 @@ class MotionMisfit {
   std::vector<double> first_;
   double natural_time_ = 0, duration_ = 0;
   int simulations_ = 0, terms_ = 0;
-  double movement_ = 0;
-  std::string stopped_;
+  double largest_displacement_ = 0;
+  std::string stop_reason_;
 };
 
 /// Parameters with the least sum of squares, with residuals and derivatives there.

@@ -114,13 +114,13 @@ std::size_t leading_rows(const std::vector<MarkerPosition>& rows, std::set<doubl
 
 /// Whether no interval of half of the rod is without a point.
 bool are_dense(const std::set<double>& arc_lengths, double length) {
-  constexpr double widest = 0.5;
+  constexpr double largest_marker_gap_share = 0.5;
   double before = 0;
   for (const double s : arc_lengths) {
-    if (s - before > widest * length) return false;
+    if (s - before > largest_marker_gap_share * length) return false;
     before = s;
   }
-  return length - before <= widest * length;
+  return length - before <= largest_marker_gap_share * length;
 }
 
 /// Returns the equally spaced arc lengths at which a start is tabulated.
@@ -200,13 +200,14 @@ std::optional<MotionStart> smooth_start(const Scene& scene, const MarkerMotion& 
     motion->add_point(*on_rod(at.arc_length, scene.length), at.time, at.position, 1);
   }
   // Weight of a gripper relative to that of a marker, which then moves it by a thousandth only.
-  constexpr double exact = 30;
+  constexpr double grip_weight = 30;
   for (const double time : times) {
     const Scene now =
         times.size() > 1 ? scene_at(scene, time, time) : scene_at(scene, begin, begin);
     for (const Gripper& gripper : now.grippers) {
-      motion->add_point(gripper.at, time, gripper.position, exact);
-      if (gripper.direction) motion->add_direction(gripper.at, time, *gripper.direction, exact);
+      motion->add_point(gripper.at, time, gripper.position, grip_weight);
+      if (gripper.direction)
+        motion->add_direction(gripper.at, time, *gripper.direction, grip_weight);
     }
   }
   motion->solve();
@@ -233,15 +234,16 @@ Eigen::VectorXd StartDeviation::deviations() const {
   // The error of a cubic's value at the end of eleven frames is that of one of them; the error of
   // its slope is 14 to 45 times as large, divided by the duration. A half wave of the rod converts
   // it to an angle.
-  constexpr double of_value = 2;
-  constexpr double of_slope = 20;
+  constexpr double end_value_error_factor = 2;
+  constexpr double end_slope_error_factor = 20;
   constexpr double least_noise = 1e-6;
   const double error = std::max(noise_, least_noise * length_) / length_;
   Eigen::VectorXd result(size());
   for (Eigen::Index i = 0; i < size(); ++i) {
     const double waves = std::numbers::pi * static_cast<double>(i % start_modes + 1);
     const bool is_rate = i >= size() / 2;
-    result[i] = error * waves * (is_rate ? of_slope / duration_ : of_value);
+    result[i] =
+        error * waves * (is_rate ? end_slope_error_factor / duration_ : end_value_error_factor);
   }
   return result;
 }

@@ -69,9 +69,9 @@ PhysicalSteps physical_steps(double point_mass, double stiffest, double slowest,
   const double lost = 2 * options.damping * std::sqrt(std::max(0.0, slowest));
   result.c_h = std::exp(-lost / options.rate);
   // |z| <= 1 in Formula 19 if c_F k <= 2 (1 + c_h), where c_h depends on the rate.
-  constexpr int rounds = 20;
+  constexpr int fixed_point_rounds = 20;
   result.least_rate = std::sqrt(stiffest / (4 * point_mass));
-  for (int i = 0; i < rounds; ++i) {
+  for (int i = 0; i < fixed_point_rounds; ++i) {
     const double c_h = std::exp(-lost / result.least_rate);
     result.least_rate = std::sqrt(stiffest / (2 * (1 + c_h) * point_mass));
   }
@@ -97,7 +97,7 @@ void add_polygon(const Scene& scene, const ModeOptions& options, SceneModes& res
   // A step has one c_F, and so the same mass, for all points.
   const PolygonModes equal =
       polygon_modes(polygon.stiffness, Eigen::VectorXd::Ones(polygon.masses.size()));
-  result.physical = physical_steps(polygon.masses.mean(), equal.squares.tail<1>()[0],
+  result.physical = physical_steps(polygon.masses.mean(), equal.squared_frequencies.tail<1>()[0],
                                    result.modes.front().rod.omega_squared, options);
   std::optional<force_model::StepOptions> step_settings;
   if (scene.force_model.stepper == Stepper::dynamic) {
@@ -161,15 +161,16 @@ PolygonModes::Match PolygonModes::nearest(const Eigen::VectorXd& movement) const
   const Eigen::VectorXd weighed = square_roots_of_masses(masses).cwiseAbs2().cwiseProduct(movement);
   const Eigen::VectorXd shares = (shapes.transpose() * weighed).cwiseAbs2() / movement.dot(weighed);
   Match best;
-  for (Eigen::Index begin = 0; begin < squares.size();) {
+  for (Eigen::Index begin = 0; begin < squared_frequencies.size();) {
     Eigen::Index end = begin + 1;
-    while (end < squares.size() &&
-           squares[end] - squares[begin] <= tolerance * std::abs(squares[end])) {
+    while (end < squared_frequencies.size() &&
+           squared_frequencies[end] - squared_frequencies[begin] <=
+               tolerance * std::abs(squared_frequencies[end])) {
       ++end;
     }
     const double kinetic_share = shares.segment(begin, end - begin).sum();
     if (kinetic_share > best.kinetic_share)
-      best = {squares.segment(begin, end - begin).mean(), kinetic_share};
+      best = {squared_frequencies.segment(begin, end - begin).mean(), kinetic_share};
     begin = end;
   }
   return best;

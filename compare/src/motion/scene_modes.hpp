@@ -32,9 +32,9 @@ struct MovingPolygon {
 
 /// Vibration modes of points on springs: K v = square M v.
 struct PolygonModes {
-  Eigen::VectorXd masses;   ///< by point
-  Eigen::VectorXd squares;  ///< squared angular frequencies, growing [1/s^2]
-  Eigen::MatrixXd shapes;   ///< modes as columns, v^T M v = 1
+  Eigen::VectorXd masses;               ///< by point
+  Eigen::VectorXd squared_frequencies;  ///< squared angular frequencies, growing [1/s^2]
+  Eigen::MatrixXd shapes;               ///< modes as columns, v^T M v = 1
 
   /// Mode, or modes of one frequency together, most similar to a given displacement.
   struct Match {

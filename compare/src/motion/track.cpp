@@ -131,14 +131,14 @@ class Tracker {
     if (!has_prescribed_turns(now.scene, frame)) return false;
     frame.energy = energies_of(now);
     frame.time = time;
-    frame.followed = passage.kept;
+    frame.followed = passage.stayed_on_branch;
     frame.seconds = timer.seconds();
     if (index > 0 && !passage.is_stationary) seconds_.push_back(frame.seconds);
     if (index > 0 && !add_energy_balance(passage, frame)) return false;
     add_contact_events(frame);
     add_force(now, frame);
-    result_.lost += frame.followed ? 0 : 1;
-    result_.repeated += passage.kept && passage.smaller ? 1 : 0;
+    result_.lost_frames += frame.followed ? 0 : 1;
+    result_.repeated_frames += passage.stayed_on_branch && passage.has_smaller_steps ? 1 : 0;
     result_.frames.push_back(std::move(frame));
     return true;
   }
@@ -170,7 +170,7 @@ class Tracker {
     frame.work = result_.frames.back().work + passage.work;
     frame.released = passage.released;
     frame.released_bound = passage.released_bound;
-    if (passage.kept) return true;
+    if (passage.stayed_on_branch) return true;
     if (frame.released < -frame.released_bound) {
       return stop(frame.time,
                   fmt::format("the solver left its branch: the energy is {:.3g} J higher than "
@@ -179,7 +179,7 @@ class Tracker {
     }
     if (branch_.has_energy_balance() && !(frame.released > frame.released_bound)) return true;
     TrackEvent event;
-    event.kind = passage.ended ? TrackEvent::Kind::snap : TrackEvent::Kind::lost;
+    event.kind = passage.end_was_observed ? TrackEvent::Kind::snap : TrackEvent::Kind::lost;
     event.frame = result_.frames.size();
     event.released = frame.released;
     event.released_bound = frame.released_bound;
@@ -201,30 +201,30 @@ class Tracker {
 
   void add_force(const SolvedInstant& now, TrackFrame& frame) {
     ForceTrackSummary& summary = result_.force;
-    if (options_.force == ForceModelRun::absent) summary.none = "not requested";
-    if (!summary.none.empty()) return;
-    const double steps = options_.rates.steps / options_.rates.frames;
+    if (options_.force == ForceModelRun::absent) summary.missing_reason = "not requested";
+    if (!summary.missing_reason.empty()) return;
+    const double steps = options_.rates.step_rate / options_.rates.frame_rate;
     summary.steps_per_frame = std::max(1L, std::lround(steps));
     try {
       if (result_.frames.empty()) {
         for (const std::size_t i : branch_.obstacles()) {
           const Obstacle& obstacle = scene_.obstacles[i];
           if (obstacle.trajectory.empty() || obstacle.body.is_half_space()) continue;
-          summary.none = fmt::format(
+          summary.missing_reason = fmt::format(
               "obstacle {} moves and is not a plane (the force model moves planes only)", i + 1);
           return;
         }
         force_.emplace(now.scene, now.rod, branch_.obstacles(), options_.solve);
       } else if (!force_->step(now.scene, summary.steps_per_frame)) {
-        summary.none = fmt::format("it diverged at {:g} s", frame.time);
+        summary.missing_reason = fmt::format("it diverged at {:g} s", frame.time);
         return;
       }
       frame.force = force_->frame(now.rod, result_.arc_length);
       if (!result_.frames.empty()) force_seconds_.push_back(force_->seconds());
     } catch (const ResultError& error) {
-      summary.none = error.what();
+      summary.missing_reason = error.what();
     } catch (const std::invalid_argument& error) {
-      summary.none = error.what();
+      summary.missing_reason = error.what();
     }
   }
 
@@ -252,7 +252,7 @@ class Tracker {
     summary.rest_error = result_.frames.front().force->error_over_length;
     summary.mean /= static_cast<double>(leader.size());
     summary.median_seconds = median(std::move(force_seconds_));
-    const Lag lag = estimate_lag(leader, follower, 1 / options_.rates.frames);
+    const Lag lag = estimate_lag(leader, follower, 1 / options_.rates.frame_rate);
     summary.lag = lag.time;
     summary.error_without_lag = lag.rms / scene_.length;
   }

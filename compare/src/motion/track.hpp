@@ -98,9 +98,9 @@ struct Track {
   std::optional<TrackStop> stopped;
   /// Median duration of a frame of the energy model in which something moves [s].
   double median_seconds = 0;
-  int lost = 0;  ///< number of frames whose shape was found by a search, on another branch or on
-                 ///< the same
-  int repeated = 0;                    ///< number of frames that needed smaller steps on the branch
+  int lost_frames = 0;  ///< number of frames whose shape was found by a search, on another branch
+                        ///< or on the same
+  int repeated_frames = 0;             ///< number of frames that needed smaller steps on the branch
   std::vector<std::string> neglected;  ///< see Solution::neglected
   ForceTrackSummary force;
 };

@@ -27,9 +27,9 @@ double clamp_distance() { return table_1().segment() / 2; }
 /// @param time  [s]
 MovingPose moving_pose(const MovingExperiment& experiment, const MovingAssumptions& choices,
                        double time) {
-  constexpr double takes = movement_ends - movement_begins;
-  const double share = std::clamp((time - movement_begins) / takes, 0.0, 1.0);
-  const double rate = time >= movement_begins && time < movement_ends ? 1 / takes : 0;
+  constexpr double movement_duration = movement_ends - movement_begins;
+  const double share = std::clamp((time - movement_begins) / movement_duration, 0.0, 1.0);
+  const double rate = time >= movement_begins && time < movement_ends ? 1 / movement_duration : 0;
   MovingPose result;
   result.angle = experiment.horizontal ? 0 : -std::numbers::pi / 2;
   switch (experiment.movement) {

@@ -224,7 +224,7 @@ std::vector<std::string> findings(const MovingReport& report) {
 
 MovingAgreement moving_agreement(const std::vector<MovingRow>& rows) {
   MovingAgreement distance;
-  double squares = 0;
+  double sum_of_squares = 0;
   int printed_rows = 0;
   for (const MovingRow& row : rows) {
     if (!row.printed) continue;
@@ -234,7 +234,7 @@ MovingAgreement moving_agreement(const std::vector<MovingRow>& rows) {
     const double logarithm = run.status == MovingStatus::finished
                                  ? std::log(run.average_force / printed.average_force)
                                  : std::numeric_limits<double>::infinity();
-    squares += logarithm * logarithm;
+    sum_of_squares += logarithm * logarithm;
     distance.counters += 3;
     distance.matching_counters +=
         static_cast<int>(is_near_printed(run.steps - nominal_moving_steps,
@@ -242,7 +242,7 @@ MovingAgreement moving_agreement(const std::vector<MovingRow>& rows) {
         static_cast<int>(is_near_printed(run.damped_steps, printed.damped_steps)) +
         static_cast<int>(is_near_printed(run.limited_steps, printed.limited_steps));
   }
-  distance.force_factor = std::exp(std::sqrt(squares / printed_rows));
+  distance.force_factor = std::exp(std::sqrt(sum_of_squares / printed_rows));
   return distance;
 }
 

@@ -28,7 +28,7 @@ ModulusVariant variant(const Scene& original, const std::string& what,
   scene.gravity *= load_factor;
   change(scene.force_model);
   ModulusVariant result;
-  result.what = what;
+  result.varied = what;
   result.settings = scene.force_model;
   result.load_factor = load_factor;
   result.gamma = scene.gamma();

@@ -41,7 +41,7 @@ struct PaperCase {
 
 /// E*/E at rest for another load, number of points, law, stiffness rule or convention.
 struct ModulusVariant {
-  std::string what;             ///< the varied setting and its value
+  std::string varied;           ///< the varied setting and its value
   ForceModelSettings settings;  ///< settings of the force model
   double load_factor = 1;       ///< factor on gravity
   double gamma = 0;             ///< w l^3 / (EI) [-]

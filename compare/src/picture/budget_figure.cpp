@@ -41,8 +41,8 @@ Figure budget_figure(const Comparison& comparison) {
          .dx = 10});
   }
   panel.curves.push_back(std::move(bars));
-  constexpr double margin = 0.06;
-  const double more = margin * std::max(most - least, 1.0);
+  constexpr double range_margin_share = 0.06;
+  const double more = range_margin_share * std::max(most - least, 1.0);
   panel.x.from = least - more;
   panel.x.to = most + more;
   panel.y.from = -bar - 0.25;

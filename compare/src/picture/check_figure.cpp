@@ -91,11 +91,12 @@ void add_levels(Panel& panel, double rms_m, std::optional<double> allowed_m, dou
                             .x = {-HUGE_VAL, HUGE_VAL},
                             .y = {m * 1e3, m * 1e3}});
   };
-  constexpr double far = 5;
-  constexpr double air = 1.1;
-  const bool has_room = allowed_m && *allowed_m < far * largest_m;
+  constexpr double largest_limit_ratio = 5;
+  constexpr double axis_margin_factor = 1.1;
+  const bool has_room = allowed_m && *allowed_m < largest_limit_ratio * largest_m;
   panel.y.from = 0;
-  panel.y.to = air * std::max({largest_m, has_room ? *allowed_m : 0, 1e-9 * length}) * 1e3;
+  panel.y.to =
+      axis_margin_factor * std::max({largest_m, has_room ? *allowed_m : 0, 1e-9 * length}) * 1e3;
   level(rms_m, "RMS", {.colour = "#404040", .width = 1.5, .dashes = Dashes::dotted});
   if (allowed_m) {
     level(*allowed_m, "tolerance", {.colour = red, .width = 1.5, .dashes = Dashes::dashed});

@@ -44,13 +44,15 @@ Figure profile_figure(const NamedValue& stiffness, const MaterialFit& fit) {
     profile.x.push_back(point.stiffness);
     profile.y.push_back(point.excess_over_limit);
   }
-  constexpr double top = 4;  // in units of the excess at the ends of the interval
-  Panel panel{
-      .height = 300,
-      .x = {.label = fmt::format("{} [{}]", stiffness.name, stiffness.unit),
-            .from = profile.x.front(),
-            .to = profile.x.back()},
-      .y = {.label = "excess of squares over that at the 95 % limit", .from = 0, .to = top}};
+  constexpr double largest_plotted_excess =
+      4;  // in units of the excess at the ends of the interval
+  Panel panel{.height = 300,
+              .x = {.label = fmt::format("{} [{}]", stiffness.name, stiffness.unit),
+                    .from = profile.x.front(),
+                    .to = profile.x.back()},
+              .y = {.label = "excess of squares over that at the 95 % limit",
+                    .from = 0,
+                    .to = largest_plotted_excess}};
   panel.curves = {std::move(interval),
                   std::move(profile),
                   {.title = "limit of the interval",
@@ -71,14 +73,14 @@ Figure profile_figure(const NamedValue& stiffness, const MaterialFit& fit) {
 }  // namespace
 
 Picture fit_picture(const std::vector<Scene>& scenes, const MaterialFit& fit) {
-  constexpr std::size_t across = 3;
+  constexpr std::size_t items_per_row = 3;
   Picture picture;
   PictureRow row;
   if (!fit.profile.empty()) {
     row.push_back({profile_figure(scenes.front().stiffness(), fit)});
   }
   for (std::size_t i = 0; i < fit.shapes.size(); ++i) {
-    if (row.size() == across) {
+    if (row.size() == items_per_row) {
       picture.rows.push_back(std::move(row));
       row.clear();
     }

@@ -18,7 +18,7 @@ std::string lag_words(const MotionCheck& check) {
 
 Series worst_point(const MotionCheck& check) {
   const FrameShapes& shapes = check.worst_shapes;
-  const FrameError& worst = check.worst();
+  const FrameError& worst = check.worst_frame_error();
   Series series{.id = "worst",
                 .title = fmt::format("worst: s = {:.4g} m, {:.4g} mm", worst.largest_at_m,
                                      worst.largest_m * 1e3),
@@ -63,8 +63,9 @@ Figure error_figure(const MotionCheck& check) {
         fmt::format("RMS if it were not {}", lag_words(check)),
         {.colour = green, .width = 2, .dashes = Dashes::dashed});
   }
-  add({.x = {check.worst().time}, .y = {check.worst().rms_m * 1e3}},
-      fmt::format("the worst frame, at {:.4g} s", check.worst().time), worst_point_style());
+  add({.x = {check.worst_frame_error().time}, .y = {check.worst_frame_error().rms_m * 1e3}},
+      fmt::format("the worst frame, at {:.4g} s", check.worst_frame_error().time),
+      worst_point_style());
   add_levels(panel, errors.rms_m, check.tolerance.allowed_m, errors.largest_m, check.scene.length);
   return {.title = "Distance of each frame", .panels = {std::move(panel)}};
 }
@@ -100,7 +101,7 @@ Drawing worst_frame_drawing(const MotionCheck& check) {
 
 Picture motion_check_picture(const MotionCheck& check) {
   Figure shapes{.title = fmt::format("{}: the worst frame, at {:.4g} s", check.scene.name,
-                                     check.worst().time),
+                                     check.worst_frame_error().time),
                 .panels = shape_panels(worst_frame_drawing(check))};
   return {{{{std::move(shapes)}, {error_figure(check)}}}};
 }

@@ -396,8 +396,8 @@ std::vector<double> all_arc_lengths(const std::vector<Index>& chosen,
 
 /// Computes the errors of a rest shape over all measured points, not only the fitted ones.
 void set_rest_shape_errors(ArcTarget all, const Arcs& arcs, RestShape& shape) {
-  constexpr int projections = 5;
-  for (int i = 0; i < projections; ++i) update_arc_lengths(all, arcs);
+  constexpr int projection_rounds = 5;
+  for (int i = 0; i < projection_rounds; ++i) update_arc_lengths(all, arcs);
   const std::vector<ArcPlace> places = evaluate_arcs(arcs, all.s);
   double sum = 0;
   for (Index i = 0; i < all.points.cols(); ++i) {

@@ -203,11 +203,11 @@ double coarse_polyline_length(const RawShape& raw) {
 /// @throws InputError if it is more than five times as long with both units
 double arc_length_unit(const RawShape& raw, const std::string& file, double unit) {
   if (raw.arc_length.empty()) return unit;
-  constexpr double longest = 5;
+  constexpr double largest_length_ratio = 5;
   const double polyline = coarse_polyline_length(raw) * unit;
   const double span = std::abs(raw.arc_length.back() - raw.arc_length.front());
-  if (polyline <= longest * span * unit) return unit;
-  if (polyline <= longest * span) return 1;
+  if (polyline <= largest_length_ratio * span * unit) return unit;
+  if (polyline <= largest_length_ratio * span) return 1;
   throw InputError(
       fmt::format("{}: s: spans {:.4g} m where the points' polyline is {:.4g} m long (allowed: s "
                   "in the unit of "

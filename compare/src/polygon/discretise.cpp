@@ -39,9 +39,9 @@ ClampMoment clamp_moment(const Scene& scene, const Gripper& grip, double side) {
       const double to = side > 0 ? piece.end : std::min(piece.end, grip.at);
       if (!(to > from)) continue;
       const double arm = side * ((from + to) / 2 - grip.at);
-      moment += direction.cross(arm * piece.between(from, to) +
+      moment += direction.cross(arm * piece.force_between(from, to) +
                                 side * std::pow(to - from, 3) / 12 * piece.slope());
-      most += arm * piece.between(from, to).norm();
+      most += arm * piece.force_between(from, to).norm();
     }
   }
   return {moment.norm(), most};
@@ -219,7 +219,7 @@ void add_loads(const Scene& scene, const Layout& layout, Discretisation& result)
   for (const DistributedLoad& load : scene.distributed_loads) {
     for (Eigen::Index i = 0; i < result.rod.loads.cols(); ++i) {
       const Cell cell = cell_of(scene, layout, i);
-      result.rod.loads.col(i) += load.between(cell.begin, cell.end);
+      result.rod.loads.col(i) += load.force_between(cell.begin, cell.end);
     }
   }
   for (const PointLoad& load : scene.loads) {

@@ -80,11 +80,11 @@ double segments_beyond_ends(const Scene& scene, Bookkeeping bookkeeping) {
 
 void require_enough_points(const Scene& scene, const ForceModelSettings& settings,
                            const std::vector<Gap>& gaps, double beyond, Eigen::Index clamps) {
-  constexpr double shortest = 0.5;  // free part of a gap, in segments
+  constexpr double least_free_part = 0.5;  // free part of a gap, in segments
   double segments = static_cast<double>(clamps) + static_cast<double>(gaps.size());
   double closest = scene.length;
   for (const Gap& gap : gaps) {
-    const double asked = gap.reach_begin + gap.reach_end + shortest;
+    const double asked = gap.reach_begin + gap.reach_end + least_free_part;
     segments = std::max(segments, beyond + scene.length * asked / (gap.end - gap.begin));
     closest = std::min(closest, gap.end - gap.begin);
   }

@@ -192,10 +192,10 @@ bool PolygonResponse::is_positive(const Eigen::SparseMatrix<double>& matrix) con
 
 PolygonResponse::Turns PolygonResponse::turns(const Eigen::Matrix3Xd& f,
                                               const Eigen::Matrix3Xd& gaps) const {
-  constexpr double less_stiff = 0.95;
+  constexpr double reduced_stiffness_factor = 0.95;
   Turns result;
   const Eigen::SparseMatrix<double> bordered = matrix(1);
-  if (!is_positive(bordered) || !is_positive(matrix(less_stiff))) return result;
+  if (!is_positive(bordered) || !is_positive(matrix(reduced_stiffness_factor))) return result;
   Eigen::VectorXd right = Eigen::VectorXd::Zero(bordered.rows());
   for (Eigen::Index i = 0; i < n_; ++i) {
     if (held_[static_cast<std::size_t>(i)]) continue;
@@ -329,9 +329,9 @@ double PolygonResponse::discretisation() const {
 }
 
 double bound_of_response(double response, double length) {
-  constexpr double factor = 2;
+  constexpr double bound_factor = 2;
   constexpr double largest_response = 0.03;
-  return response <= largest_response * length ? factor * response
+  return response <= largest_response * length ? bound_factor * response
                                                : std::numeric_limits<double>::infinity();
 }
 

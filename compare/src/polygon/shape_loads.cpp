@@ -17,9 +17,9 @@ constexpr std::array<double, 4> drag_weights = {0.347854845137453857, 0.65214515
 
 void add_drag(const Scene& scene, const energy_model::Equilibrium& shape,
               const std::vector<double>& arc_lengths, std::vector<Eigen::Vector3d>& sums) {
-  constexpr int panels = 64;  // intervals of the whole rod, in addition to the other cuts
+  constexpr int interval_count = 64;  // intervals of the whole rod, in addition to the other cuts
   std::vector<double> cuts(arc_lengths);
-  for (int i = 0; i <= panels; ++i) cuts.push_back(scene.length * i / panels);
+  for (int i = 0; i <= interval_count; ++i) cuts.push_back(scene.length * i / interval_count);
   for (const Gripper& gripper : scene.grippers) cuts.push_back(gripper.at);
   for (const PointLoad& load : scene.loads) cuts.push_back(load.at);
   for (const Section& section : scene.sections) {

@@ -18,8 +18,8 @@ obstacle::Body read_box(StrictTable& table, const Eigen::Vector3d& centre) {
   Eigen::Matrix3d axes = Eigen::Matrix3d::Identity();
   if (table.has("axis")) axes.col(0) = unit_vector(table, "axis");
   if (table.has("normal")) axes.col(1) = unit_vector(table, "normal");
-  constexpr double square = 1e-6;
-  if (std::abs(axes.col(0).dot(axes.col(1))) > square) {
+  constexpr double perpendicular_tolerance = 1e-6;
+  if (std::abs(axes.col(0).dot(axes.col(1))) > perpendicular_tolerance) {
     table.fail(table.has("axis") ? "axis" : "normal",
                "the edges along axis and normal are not at right angles (axis is +x and normal +y "
                "if not given)");

@@ -69,9 +69,9 @@ std::shared_ptr<const MarkerMotion> read_start(StrictTable& rates, const Scene& 
 }
 
 void read_track(StrictTable& rates, Scene& scene) {
-  rates.read("frame_rate", scene.track.frames);
-  rates.read("obstacle_rate", scene.track.obstacles);
-  rates.read("step_rate", scene.track.steps);
+  rates.read("frame_rate", scene.track.frame_rate);
+  rates.read("obstacle_rate", scene.track.obstacle_rate);
+  rates.read("step_rate", scene.track.step_rate);
   scene.start = read_start(rates, scene);
   rates.finish();
 }

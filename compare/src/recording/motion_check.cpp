@@ -62,7 +62,7 @@ TrackOptions track_options(const Scene& scene, const RecordedTimes& times,
   const double to = times.last + lag_range_share * (times.last - times.first);
   const double rate = request.frame_rate.value_or(
       std::max(frames_per_recorded * (times.count - 1) / (times.last - times.first),
-               std::min(scene.track.frames, default_frame_count / (to - from))));
+               std::min(scene.track.frame_rate, default_frame_count / (to - from))));
   const double frames = std::max<double>(fewest_frames, std::ceil((to - from) * rate));
   TrackOptions options{.from = from,
                        .to = to,
@@ -70,7 +70,7 @@ TrackOptions track_options(const Scene& scene, const RecordedTimes& times,
                        .force = ForceModelRun::absent,
                        .samples = model_samples,
                        .solve = request.solve};
-  options.rates.frames = frames / (to - from);
+  options.rates.frame_rate = frames / (to - from);
   return options;
 }
 
@@ -79,7 +79,7 @@ template <typename Frames, typename Points>
 std::optional<ModelMotion> motion_model(const Frames& frames, const Points& points_of,
                                         const Scene& scene, const TrackOptions& options,
                                         double last) {
-  const double step = 1 / options.rates.frames;
+  const double step = 1 / options.rates.frame_rate;
   const double end = *options.from + static_cast<double>(frames.size() - 1) * step;
   if (frames.size() < fewest_frames || end < last) return std::nullopt;
   std::vector<Eigen::Matrix3Xd> points;
@@ -314,7 +314,7 @@ MotionCheck check_motion(const Scene& scene, const MarkerMotion& recorded,
                     .model = request.model,
                     .damping = request.damping,
                     .begin = *models.options.from,
-                    .frame_rate = models.options.rates.frames,
+                    .frame_rate = models.options.rates.frame_rate,
                     .points = recorded.positions.size(),
                     .missing_inertia_reason = models.missing_inertia_reason,
                     .tolerance = request.tolerance.value_or(default_tolerance(scene.length))};
@@ -338,7 +338,8 @@ MotionCheck check_motion(const Scene& scene, const MarkerMotion& recorded,
     }
     if (request.explaining == Explaining::yes) check.causes = search.run(lag);
   }
-  check.worst_shapes = frame_shapes(recorded, judged, check.worst().time, scene.length, check.lag);
+  check.worst_shapes =
+      frame_shapes(recorded, judged, check.worst_frame_error().time, scene.length, check.lag);
   return check;
 }
 

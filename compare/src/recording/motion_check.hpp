@@ -111,7 +111,9 @@ struct MotionCheck {
   std::string reason;  ///< one clause
 
   /// Returns the frame with the largest RMS.
-  [[nodiscard]] const FrameError& worst() const { return errors.frames[errors.worst_frame]; }
+  [[nodiscard]] const FrameError& worst_frame_error() const {
+    return errors.frames[errors.worst_frame];
+  }
 };
 
 /// Compares a recording, by markers (parse_markers()), with the rod that follows the scene's

@@ -69,7 +69,7 @@ double variance_inflation(const std::vector<MarkerMotion>& recordings,
 /// @throws InputError
 void require_movement(const Scene& scene, const MotionMisfit& misfit,
                       const std::vector<MarkerMotion>& recordings) {
-  if (misfit.movement() > negligible_movement * scene.length) return;
+  if (misfit.largest_displacement() > negligible_movement * scene.length) return;
   const MarkerMotion& recorded = recordings.front();
   const std::optional<TimeSpan> motion = motion_time_span(scene);
   const std::string when = motion ? fmt::format("{} moves it from {:g} to {:g} s", scene.file,
@@ -84,19 +84,19 @@ void require_movement(const Scene& scene, const MotionMisfit& misfit,
 
 /// Returns the parameters with the best of a few stiffnesses.
 Eigen::VectorXd with_best_stiffness(MotionMisfit& misfit, const Eigen::VectorXd& start) {
-  constexpr double finest = 0.35;  // step of the logarithm
+  constexpr double scan_log_step = 0.35;  // step of the logarithm
   constexpr int most = 6;
   Eigen::VectorXd best;
   double least = std::numeric_limits<double>::infinity();
   for (int k = -most; k <= most; ++k) {
     Eigen::VectorXd parameters = start;
-    parameters[0] = finest * k;
+    parameters[0] = scan_log_step * k;
     const double sum = misfit.residuals(parameters).squaredNorm();
-    if (!(sum < least) || !misfit.stopped().empty()) continue;
+    if (!(sum < least) || !misfit.stop_reason().empty()) continue;
     least = sum;
     best = parameters;
   }
-  if (best.size() == 0) throw ConvergenceError("the moving rod stopped: " + misfit.stopped());
+  if (best.size() == 0) throw ConvergenceError("the moving rod stopped: " + misfit.stop_reason());
   return best;
 }
 
@@ -213,13 +213,13 @@ MotionFit fit_motion(const Scene& scene, const std::vector<MarkerMotion>& record
           : zero;
   misfit.restrict_to(misfit.duration());
   const Eigen::VectorXd given = misfit.residuals(as_given);
-  if (misfit.stopped().empty()) require_movement(scene, misfit, recordings);
+  if (misfit.stop_reason().empty()) require_movement(scene, misfit, recordings);
   result.given_rms = rms_of(given.reshaped(3, given.size() / 3));
   misfit.restrict_to(window);
   Eigen::VectorXd start = with_best_stiffness(misfit, zero);
   LeastSquares nearest;
-  constexpr double longer = 4;
-  for (double seconds = window;; seconds *= longer) {
+  constexpr double window_growth = 4;
+  for (double seconds = window;; seconds *= window_growth) {
     const bool all = seconds * 1.5 >= misfit.duration();
     misfit.restrict_to(all ? misfit.duration() : seconds);
     nearest = least_squares(misfit, start, all ? most_last_steps : most_window_steps);

@@ -62,19 +62,19 @@ MotionShift make_shift(const Eigen::Matrix3Xd& residuals, double lag, Displaceme
 
 /// Sums over the points of one group.
 struct Sum {
-  double squares = 0;
+  double sum_of_squares = 0;
   double largest = 0;
   double largest_at = 0;
   double count = 0;
 
   void add(double distance, double at) {
-    squares += distance * distance;
+    sum_of_squares += distance * distance;
     count += 1;
     if (!(distance > largest)) return;
     largest = distance;
     largest_at = at;
   }
-  [[nodiscard]] double rms() const { return std::sqrt(squares / count); }
+  [[nodiscard]] double rms() const { return std::sqrt(sum_of_squares / count); }
 };
 
 }  // namespace

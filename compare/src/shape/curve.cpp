@@ -220,18 +220,18 @@ double Curve::nearest(const Eigen::Vector3d& position, double s) const {
 
 std::vector<double> Curve::nearest_in_order(const Eigen::Matrix3Xd& positions) const {
   const Eigen::Index count = positions.cols();
-  constexpr Eigen::Index nodes = curve_elements + 1;
+  constexpr Eigen::Index node_count = curve_elements + 1;
   // sums[g]: least sum of squares with the last point so far at node g; from: node of its
   // predecessor
-  Eigen::VectorXd sums = Eigen::VectorXd::Zero(nodes);
-  std::vector<std::uint16_t> from(static_cast<std::size_t>(count * nodes));
+  Eigen::VectorXd sums = Eigen::VectorXd::Zero(node_count);
+  std::vector<std::uint16_t> from(static_cast<std::size_t>(count * node_count));
   for (Eigen::Index i = 0; i < count; ++i) {
     const Eigen::RowVectorXd distance =
         (nodes_.colwise() - positions.col(i)).colwise().squaredNorm();
     double best = std::numeric_limits<double>::infinity();
     std::uint16_t best_node = 0;
-    std::uint16_t* row = from.data() + i * nodes;
-    for (Eigen::Index g = 0; g < nodes; ++g) {
+    std::uint16_t* row = from.data() + i * node_count;
+    for (Eigen::Index g = 0; g < node_count; ++g) {
       if (sums[g] < best) {
         best = sums[g];
         best_node = static_cast<std::uint16_t>(g);
@@ -247,7 +247,7 @@ std::vector<double> Curve::nearest_in_order(const Eigen::Matrix3Xd& positions) c
     const double s = std::min(static_cast<double>(node) * step_, length_);
     const double moved = nearest(positions.col(i), s);
     result[static_cast<std::size_t>(i)] = std::clamp(moved, s - step_, s + step_);
-    node = from[static_cast<std::size_t>(i * nodes + node)];
+    node = from[static_cast<std::size_t>(i * node_count + node)];
   }
   return result;
 }

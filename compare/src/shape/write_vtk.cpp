@@ -14,8 +14,8 @@ namespace {
 std::string vtk_title(std::string title) {
   std::replace_if(
       title.begin(), title.end(), [](char c) { return c < ' ' || c > '~'; }, '?');
-  constexpr std::size_t longest = 200;
-  if (title.size() > longest) title.resize(longest);
+  constexpr std::size_t longest_title = 200;
+  if (title.size() > longest_title) title.resize(longest_title);
   return title;
 }
 
@@ -54,7 +54,7 @@ std::string vtk_polyline(const Shape& shape, const PointFields& fields, const st
 
 std::string vtu_polyline(const Shape& shape) {
   const Eigen::Matrix3Xd& points = shape.points;
-  constexpr int polyline = 4;  // VTK_POLY_LINE
+  constexpr int polyline_cell_type = 4;  // VTK_POLY_LINE
   std::string rows;
   std::string indices;
   for (Eigen::Index i = 0; i < points.cols(); ++i) {
@@ -73,7 +73,7 @@ std::string vtu_polyline(const Shape& shape) {
       "</Cells>\n<PointData>\n"
       "<DataArray type=\"Float64\" Name=\"arc_length_m\" format=\"ascii\">\n{4}\n</DataArray>\n"
       "</PointData>\n</Piece>\n</UnstructuredGrid>\n</VTKFile>\n",
-      points.cols(), rows, indices, polyline, fmt::join(shape.arc_length, " "));
+      points.cols(), rows, indices, polyline_cell_type, fmt::join(shape.arc_length, " "));
 }
 
 }  // namespace dlo::compare

@@ -291,8 +291,8 @@ Solution solve_force(const Scene& scene, const ForceModelSettings& settings,
   BalancedGrippers balance =
       balanced(scene, resting, points, gripper_loads(resting, points), allowed, "force");
   solution.grippers = std::move(balance.loads);
-  constexpr double stated_above = 1e-6;  // divided by the largest force or moment
-  if (balance.share > stated_above) {
+  constexpr double reported_imbalance_limit = 1e-6;  // divided by the largest force or moment
+  if (balance.share > reported_imbalance_limit) {
     solution.message += fmt::format(
         ", forces and moments are balanced within {:.2g} of the largest", balance.share);
   }

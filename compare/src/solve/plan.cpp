@@ -118,7 +118,7 @@ int points_for_target(const Scene& scene, const energy_model::Equilibrium& rod, 
 }
 
 Neglected inertia(const Scene& scene, double speed) {
-  Neglected result{.what = "inertia", .models = "all but a simulation in time"};
+  Neglected result{.name = "inertia", .models = "all but a simulation in time"};
   if (speed == 0) {
     result.why = "nothing moves";
     return result;
@@ -187,9 +187,9 @@ void set_planned_twist(const energy_model::Equilibrium& rod, Plan& plan) {
 
 /// Bounds of neglected effects that follow from the shape of the rod.
 struct ShapeBounds {
-  Neglected stretch{.what = "stretch", .models = "energy, exact, chain of rigid segments"};
-  Neglected shear{.what = "shear", .models = "all"};
-  Neglected polygon{.what = "polygon", .models = "chain, force"};
+  Neglected stretch{.name = "stretch", .models = "energy, exact, chain of rigid segments"};
+  Neglected shear{.name = "shear", .models = "all"};
+  Neglected polygon{.name = "polygon", .models = "chain, force"};
 
   void set_unbounded(const std::string& why) {
     for (Neglected* item : {&stretch, &shear, &polygon}) {
@@ -296,7 +296,7 @@ void note_obstacles_out_of_reach(Plan& plan) {
 
 double Plan::bound(const std::string& what) const {
   for (const Neglected& item : neglected) {
-    if (item.what == what) return item.bound_m;
+    if (item.name == what) return item.bound_m;
   }
   throw std::invalid_argument(fmt::format("Plan::bound: no neglected effect \"{}\"", what));
 }

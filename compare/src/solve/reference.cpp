@@ -73,8 +73,8 @@ void mark_lost_turns(const Scene& scene, energy_model::Equilibrium& equilibrium)
 std::optional<energy_model::Equilibrium> stretched_shape(const Scene& scene,
                                                          const energy_model::Problem& problem,
                                                          const energy_model::ExactOptions& exact) {
-  constexpr double soft = 1e3;  // Gamma; for stiffer rods multiple shooting is fast
-  if (!problem.axial_stiffness || !problem.obstacles.empty() || !(scene.gamma() > soft)) {
+  constexpr double soft_rod_gamma = 1e3;  // Gamma; for stiffer rods multiple shooting is fast
+  if (!problem.axial_stiffness || !problem.obstacles.empty() || !(scene.gamma() > soft_rod_gamma)) {
     return std::nullopt;
   }
   energy_model::Problem rigid = problem;

@@ -133,8 +133,9 @@ StretchEffect stretch_effect(const Scene& scene, Model model, const energy_model
   }
   estimate_by_longer_rod(scene, solution, *EA, options, effect);
   // A larger displacement means that the search found another equilibrium.
-  constexpr double another = 10;
-  if (effect.displacement_m > another * effect.strain * (1 + 1 / slack) * scene.length) {
+  constexpr double other_equilibrium_factor = 10;
+  if (effect.displacement_m >
+      other_equilibrium_factor * effect.strain * (1 + 1 / slack) * scene.length) {
     effect.displacement_m = effect.tension = std::numeric_limits<double>::quiet_NaN();
   }
   return effect;

@@ -29,11 +29,11 @@ constexpr double frame_s = 1e-3;
 struct Frames {
   std::vector<double> seconds;
   long evaluations = 0;
-  double squares = 0;  // sum of the squared errors, each divided by the length
+  double sum_of_squares = 0;  // sum of the squared errors, each divided by the length
   int errors = 0;
 
   void add_error(double square) {
-    squares += square;
+    sum_of_squares += square;
     ++errors;
   }
 
@@ -41,7 +41,7 @@ struct Frames {
     const auto count = static_cast<double>(seconds.size());
     run.time = timing_of(seconds);
     run.evaluations = std::lround(static_cast<double>(evaluations) / count);
-    run.rms_over_length = std::sqrt(squares / errors);
+    run.rms_over_length = std::sqrt(sum_of_squares / errors);
   }
 };
 
@@ -108,10 +108,10 @@ BenchmarkRun track_energy(const Scene& scene, int terms, const ReferenceTrack& t
 /// Returns the number of steps that fit into a frame, measured on a copy of the simulation. The
 /// median of several trials is used, since other load on the machine may delay any one of them.
 long frame_steps(force_model::Simulation simulation) {
-  constexpr int trials = 15;
+  constexpr int timing_trials = 15;
   constexpr int steps = 200;
   std::vector<double> seconds;
-  for (int trial = 0; trial < trials; ++trial) {
+  for (int trial = 0; trial < timing_trials; ++trial) {
     const Timer timer;
     for (int i = 0; i < steps; ++i) (void)simulation.step();
     seconds.push_back(timer.seconds());

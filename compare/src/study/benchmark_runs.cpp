@@ -90,14 +90,14 @@ bool Stopwatch::run_once(const std::string& name, double predicted_s,
 std::optional<Timing> Stopwatch::time(const std::string& name, double predicted_s,
                                       const std::function<double()>& work) {
   // Runs that are faster than this in total are repeated more often [s].
-  constexpr double quick = 0.02;
+  constexpr double quick_run_seconds = 0.02;
   if (!fits(name, predicted_s)) return std::nullopt;
   std::vector<double> times;
   double total = 0;
   const auto open = [&] {
     const int count = static_cast<int>(times.size());
     if (count < options_.repeats) return count == 0 || total + total / count < left() / 4;
-    return total < quick && count < 20 * options_.repeats;
+    return total < quick_run_seconds && count < 20 * options_.repeats;
   };
   while (open()) {
     if (!done(name, [&] { times.push_back(work()); })) return std::nullopt;

@@ -56,7 +56,7 @@ HardCase make(std::string name, std::string what, const Scene& scene,
               const ForceModelSettings& settings) {
   HardCase result;
   result.name = std::move(name);
-  result.what = std::move(what);
+  result.difficulty = std::move(what);
   result.discretisation = discretise(scene, settings);
   ForceModelSettings with_masses = settings;
   with_masses.stepper = Stepper::verlet;
@@ -145,8 +145,8 @@ HardCase unequal_segments() {
 
 /// Returns the rod of Table 5 with the paper's own law and convention, under its own weight.
 HardCase paper_rod_case() {
-  constexpr double orientation = -175 * pi / 180;
-  Scene scene = steel_rod(1, {std::cos(orientation), std::sin(orientation), 0});
+  constexpr double clamp_angle = -175 * pi / 180;
+  Scene scene = steel_rod(1, {std::cos(clamp_angle), std::sin(clamp_angle), 0});
   scene.gravity = {0, -9.81, 0};
   ForceModelSettings settings = settings_for(scene);
   settings.law = BendingLaw::paper;
@@ -230,7 +230,7 @@ std::vector<HardCase> overstretched_rods() {
 
   HardCase refused = stretched;
   refused.name = "pulled too far";
-  refused.what = "two grippers 20 % further apart than the rod is long: no shape exists";
+  refused.difficulty = "two grippers 20 % further apart than the rod is long: no shape exists";
   scene.grippers.back().position.x() = distance;
   try {
     (void)discretise(scene, settings_for(scene));

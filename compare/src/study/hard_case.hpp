@@ -19,7 +19,7 @@ struct GripMotion {
 /// Rod and initial shape that are difficult for a stepper.
 struct HardCase {
   std::string name;               ///< short name, for --case
-  std::string what;               ///< one line: the difficulty of the case
+  std::string difficulty;         ///< one line: the difficulty of the case
   Discretisation discretisation;  ///< the rod before the motion
   Eigen::Matrix3Xd start;         ///< [m], 3 x N
   GripMotion motion;              ///< motion of the first gripper

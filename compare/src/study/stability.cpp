@@ -22,9 +22,9 @@ namespace {
 
 // Shapes sampled during a run, and number of consecutive steps sampled at its end.
 constexpr int samples = 64;
-constexpr double rest_drift = 1e-6;  // allowed movement of a rod at rest, in lengths
+constexpr double rest_displacement = 1e-6;  // allowed movement of a rod at rest, in lengths
 // Allowed growth of its energy, divided by the energy: rounding only.
-constexpr double rest_energy = 1e-12;
+constexpr double rest_energy_growth = 1e-12;
 
 force_model::StepOptions options_for(const HardCase& hard, Stepper stepper) {
   ForceModelSettings settings;
@@ -52,13 +52,14 @@ SimulationEnd step_until_rest(force_model::Simulation& simulation, long max_step
     const force_model::RelaxResult result = simulation.relax(part);
     trajectory.finite = result.status != force_model::RelaxStatus::diverged;
     trajectory.at_rest = result.status == force_model::RelaxStatus::at_rest;
-    if (sample >= samples / 2 || trajectory.at_rest) trajectory.late.push_back(simulation.points());
+    if (sample >= samples / 2 || trajectory.at_rest)
+      trajectory.late_shapes.push_back(simulation.points());
   }
   for (int step = 0; step < samples && trajectory.finite && !trajectory.at_rest; ++step) {
     trajectory.finite = simulation.step().status != force_model::StepStatus::diverged;
-    trajectory.last.push_back(simulation.points());
+    trajectory.last_shapes.push_back(simulation.points());
   }
-  if (!trajectory.at_rest) trajectory.late.push_back(simulation.points());
+  if (!trajectory.at_rest) trajectory.late_shapes.push_back(simulation.points());
   return trajectory;
 }
 
@@ -67,9 +68,10 @@ SimulationEnd step_from_rest(force_model::Simulation& simulation, long steps) {
   SimulationEnd trajectory{.finite = true};
   for (long step = 1; step <= steps && trajectory.finite; ++step) {
     trajectory.finite = simulation.step().status != force_model::StepStatus::diverged;
-    if (step % std::max(1L, steps / samples) == 0) trajectory.late.push_back(simulation.points());
+    if (step % std::max(1L, steps / samples) == 0)
+      trajectory.late_shapes.push_back(simulation.points());
   }
-  trajectory.late.push_back(simulation.points());
+  trajectory.late_shapes.push_back(simulation.points());
   return trajectory;
 }
 
@@ -81,7 +83,7 @@ energy_model::PolygonResult reference_of(const HardCase& hard) {
 /// the reference.
 void try_other_equilibrium(const force_model::Rod& rod, const SimulationEnd& trajectory,
                            double reference_energy, double tolerance, StabilityResult& result) {
-  const Eigen::Matrix3Xd& end = trajectory.late.back();
+  const Eigen::Matrix3Xd& end = trajectory.late_shapes.back();
   // solve_polygon needs an initial guess without segments of zero length.
   if (!(chord_lengths(end).minCoeff() > 0)) return;
   const energy_model::PolygonResult other = energy_model::solve_polygon(polygon_problem(rod), end);
@@ -95,7 +97,7 @@ void try_other_equilibrium(const force_model::Rod& rod, const SimulationEnd& tra
 }
 
 StabilityResult refused(const HardCase& hard, Stepper stepper) {
-  StabilityResult result{.name = hard.name, .what = hard.what, .stepper = stepper};
+  StabilityResult result{.name = hard.name, .difficulty = hard.difficulty, .stepper = stepper};
   result.outcome = Outcome::refused;
   result.error_over_length = std::numeric_limits<double>::quiet_NaN();
   result.note = hard.refusal;
@@ -105,7 +107,7 @@ StabilityResult refused(const HardCase& hard, Stepper stepper) {
 StabilityResult run_with_reference(const energy_model::PolygonResult& reference,
                                    const HardCase& hard, Stepper stepper,
                                    const StabilityOptions& options) {
-  StabilityResult result{.name = hard.name, .what = hard.what, .stepper = stepper};
+  StabilityResult result{.name = hard.name, .difficulty = hard.difficulty, .stepper = stepper};
   const force_model::Rod rod = hard.rod(1);
   force_model::Simulation simulation(hard.rod(0), hard.start, options_for(hard, stepper));
   const bool detects_rest = stepper == Stepper::automatic || stepper == Stepper::implicit;
@@ -119,13 +121,13 @@ StabilityResult run_with_reference(const energy_model::PolygonResult& reference,
     trajectory =
         rests ? step_from_rest(simulation, at_rest_steps) : step_until_rest(simulation, budget);
   } else {
-    trajectory.late.push_back(simulation.points());
+    trajectory.late_shapes.push_back(simulation.points());
   }
-  const double tolerance = rests ? rest_drift : options.tolerance;
+  const double tolerance = rests ? rest_displacement : options.tolerance;
   result.outcome = classify(trajectory, reference.points, rod.length(), tolerance);
   result.steps = simulation.steps();
   result.at_rest = trajectory.at_rest;
-  const Eigen::Matrix3Xd& end = trajectory.late.back();
+  const Eigen::Matrix3Xd& end = trajectory.late_shapes.back();
   result.error_over_length = trajectory.finite
                                  ? largest_distance(end, reference.points) / rod.length()
                                  : std::numeric_limits<double>::infinity();
@@ -134,7 +136,8 @@ StabilityResult run_with_reference(const energy_model::PolygonResult& reference,
     const double growth = force_model::energy(rod, end).total() - before;
     const double share = growth / std::abs(before);
     result.note = fmt::format("energy changed by {:.2g} of its size", share);
-    if (result.outcome == Outcome::pass && !(share <= rest_energy)) result.outcome = Outcome::wrong;
+    if (result.outcome == Outcome::pass && !(share <= rest_energy_growth))
+      result.outcome = Outcome::wrong;
   } else if (result.outcome == Outcome::wrong) {
     result.note = trajectory.at_rest ? "at rest elsewhere" : "still creeping";
     try_other_equilibrium(rod, trajectory, reference.energy, tolerance, result);
@@ -163,20 +166,21 @@ double largest_distance(const Eigen::Matrix3Xd& points, const Eigen::Matrix3Xd& 
 
 Outcome classify(const SimulationEnd& trajectory, const Eigen::Matrix3Xd& reference, double length,
                  double tolerance) {
-  constexpr double reach = 10;  // in lengths
-  if (!trajectory.finite || trajectory.late.empty()) return Outcome::diverges;
-  if (!(largest_distance(trajectory.late.back(), reference) < reach * length)) {
+  constexpr double divergence_distance = 10;  // in lengths
+  if (!trajectory.finite || trajectory.late_shapes.empty()) return Outcome::diverges;
+  if (!(largest_distance(trajectory.late_shapes.back(), reference) <
+        divergence_distance * length)) {
     return Outcome::diverges;
   }
   const auto right = [&](const Eigen::Matrix3Xd& shape) {
     return largest_distance(shape, reference) <= tolerance * length;
   };
-  const bool stays =
-      trajectory.at_rest || std::all_of(trajectory.late.begin(), trajectory.late.end(), right);
-  if (stays && right(trajectory.late.back())) return Outcome::pass;
+  const bool stays = trajectory.at_rest || std::all_of(trajectory.late_shapes.begin(),
+                                                       trajectory.late_shapes.end(), right);
+  if (stays && right(trajectory.late_shapes.back())) return Outcome::pass;
   const double threshold = tolerance * length;
-  if (!trajectory.at_rest &&
-      (oscillates(trajectory.late, threshold) || oscillates(trajectory.last, threshold))) {
+  if (!trajectory.at_rest && (oscillates(trajectory.late_shapes, threshold) ||
+                              oscillates(trajectory.last_shapes, threshold))) {
     return Outcome::oscillates;
   }
   return Outcome::wrong;

@@ -37,8 +37,8 @@ struct SimulationEnd {
   bool at_rest = false;  ///< proved, see force_model::Simulation::relax
   /// Shapes at equal intervals over the last half of the steps, the final one last [m], 3 x N each.
   /// The final shape alone suffices if it is at rest.
-  std::vector<Eigen::Matrix3Xd> late;
-  std::vector<Eigen::Matrix3Xd> last;  ///< shapes of the last consecutive steps [m]
+  std::vector<Eigen::Matrix3Xd> late_shapes;
+  std::vector<Eigen::Matrix3Xd> last_shapes;  ///< shapes of the last consecutive steps [m]
 };
 
 /// Returns the largest distance of a point from the same point of the reference [m]; infinite if a
@@ -78,7 +78,7 @@ struct StabilityOptions {
 /// Result of one stepper on one hard case.
 struct StabilityResult {
   std::string name;                      ///< name of the case
-  std::string what;                      ///< the difficulty of the case
+  std::string difficulty;                ///< the difficulty of the case
   Stepper stepper = Stepper::automatic;  ///< stepper of the run
   Outcome outcome = Outcome::diverges;   ///< how the run ended
   long steps = 0;                        ///< number of steps

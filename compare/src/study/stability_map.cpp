@@ -148,11 +148,11 @@ class Trials {
 
   static Outcome classify_rest(const RodAtRest& rest, const Eigen::Matrix3Xd& points,
                                bool diverged) {
-    constexpr double reach = 10;  // lengths
+    constexpr double divergence_distance = 10;  // lengths
     const double length = rest.rod.length();
     const double distance =
         (points - rest.points).norm() / std::sqrt(static_cast<double>(points.cols()));  // RMS
-    if (diverged || !(distance < reach * length)) return Outcome::diverges;
+    if (diverged || !(distance < divergence_distance * length)) return Outcome::diverges;
     return distance > unstable_growth * disturbance * length ? Outcome::oscillates : Outcome::pass;
   }
 

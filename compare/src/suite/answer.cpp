@@ -59,10 +59,10 @@ Eigen::VectorXd bending_moments(const Scene& scene, const Shape& shape, double p
 
 /// Returns MomentBalance::resolution for the scene's stiffness.
 double resolution(const Scene& scene, const PointForces& forces) {
-  constexpr double of_second_order = 0.25;
+  constexpr double second_order_coefficient = 0.25;
   const double h = scene.length / static_cast<double>(forces.loads.cols() - 1);
   const double force = forces.weights.colwise().norm().sum() + forces.loads.colwise().norm().sum();
-  return of_second_order * h * h * force / scene.bending_stiffness();
+  return second_order_coefficient * h * h * force / scene.bending_stiffness();
 }
 
 /// Number of points of the chain with which a rod that stretches is compared.
@@ -89,9 +89,9 @@ AnswerBounds bounds_between(const Solution& a, const Solution& b) {
 /// eigenvalue of the answer itself.
 void add_other_equilibria(Answer& answer) {
   const std::vector<double>& s = answer.first.shape.arc_length;
-  const AllSolutions all = solve_all(answer.of.scene, {}, s);
-  const double length = answer.of.scene.length;
-  const double large = magnitudes(answer.of.scene).energy;
+  const AllSolutions all = solve_all(answer.battery_scene.scene, {}, s);
+  const double length = answer.battery_scene.scene.length;
+  const double large = magnitudes(answer.battery_scene.scene).energy;
   for (const Solution& one : all.solutions) {
     const double difference = rms(s, one.shape.points - answer.first.shape.points);
     if (difference < method_tolerance * length) {
@@ -148,11 +148,11 @@ std::optional<MomentBalance> moment_balance(const Scene& scene, const Shape& sha
   };
   const Eigen::VectorXd bending = inside(bending_moments(scene, rod, power));
   if (!(bending.norm() > 0)) return std::nullopt;
-  constexpr double no_load = 1e-9;
+  constexpr double negligible_load_share = 1e-9;
   const Eigen::VectorXd of_weight = inside(moments_beyond(rod.points, forces.weights));
   const Eigen::VectorXd of_loads = inside(moments_beyond(rod.points, forces.loads));
-  const bool has_weight = of_weight.norm() > no_load * bending.norm();
-  const bool has_loads = of_loads.norm() > no_load * bending.norm();
+  const bool has_weight = of_weight.norm() > negligible_load_share * bending.norm();
+  const bool has_loads = of_loads.norm() > negligible_load_share * bending.norm();
   if (!has_weight && !has_loads && unknown == 0) return MomentBalance{.imbalance = 1};
   // The unknowns are the columns, and the right-hand side contains the rest. Without loads the
   // moments do not depend on the stiffness. With only weight or only other loads, the factors of
@@ -181,9 +181,11 @@ std::optional<MomentBalance> moment_balance(const Scene& scene, const Shape& sha
   MomentBalance result;
   if (any) result.stiffness = found[found.size() - 1];
   if (both) result.weight = found[found.size() - 2];
-  constexpr double least = 1e-3;
-  result.resolution = resolution(scene, forces) / std::clamp(result.stiffness, least, 1.0);
-  const double size = std::max(std::abs(result.stiffness) * bending.norm(), least * right.norm());
+  constexpr double least_stiffness_factor = 1e-3;
+  result.resolution =
+      resolution(scene, forces) / std::clamp(result.stiffness, least_stiffness_factor, 1.0);
+  const double size =
+      std::max(std::abs(result.stiffness) * bending.norm(), least_stiffness_factor * right.norm());
   result.imbalance = (columns * found - right).norm() / size;
   return result;
 }
@@ -194,7 +196,7 @@ Model answer_model(const Scene& scene) {
 
 Answer certified_answer(const BatteryScene& scene) {
   const std::vector<double> s = equal_arc_lengths(scene.scene.length, answer_points);
-  Answer answer{.of = scene};
+  Answer answer{.battery_scene = scene};
   answer.first = solve(scene.scene, answer_model(scene.scene), {}, s);
   if (scene.scene.stretch != Stretch::none) {
     Scene fine = scene.scene;
@@ -221,7 +223,7 @@ Answer certified_answer(const BatteryScene& scene) {
 MotionAnswer certified_motion(const BatteryScene& scene) {
   const double length = scene.scene.length;
   const ReleasedRod rod{scene.scene, scene.motion.value().begin};
-  MotionAnswer answer{.of = scene,
+  MotionAnswer answer{.battery_scene = scene,
                       .times = scene.motion->times(),
                       .arc_length = equal_arc_lengths(length, motion_points)};
   ReleasedMotion fine = release_rod(rod, answer.times, answer.arc_length, fine_terms);

@@ -33,11 +33,11 @@ struct AnswerBounds {
 
 /// Equilibrium of a scene, computed by two methods.
 struct Answer {
-  BatteryScene of;            ///< the scene
-  Solution first;             ///< the answer: by `energy`, or by `exact` if the rod stretches
-  Solution second;            ///< the solution with which it was compared
-  std::string second_method;  ///< name of the second method: "exact", "chain, N = 1024"
-  AnswerBounds bounds;        ///< differences between both solutions
+  BatteryScene battery_scene;  ///< the scene
+  Solution first;              ///< the answer: by `energy`, or by `exact` if the rod stretches
+  Solution second;             ///< the solution with which it was compared
+  std::string second_method;   ///< name of the second method: "exact", "chain, N = 1024"
+  AnswerBounds bounds;         ///< differences between both solutions
   /// Other equilibria that a search has found, in the order of energy.
   std::vector<OtherEquilibrium> others;
   bool is_lowest = true;  ///< no other stable equilibrium was found with less energy
@@ -85,7 +85,7 @@ struct MomentBalance {
 
 /// Motion of a scene, computed by two methods.
 struct MotionAnswer {
-  BatteryScene of;                       ///< the scene, which has a motion
+  BatteryScene battery_scene;            ///< the scene, which has a motion
   std::vector<double> times;             ///< times of the frames [s]
   std::vector<double> arc_length;        ///< arc lengths of the points [m]
   std::vector<Eigen::Matrix3Xd> frames;  ///< points of the answer at each time, by `energy` [m]

@@ -22,7 +22,7 @@ constexpr std::string_view builtin_folder = "data/suite/";
 
 ClosedForm read_closed_form(StrictTable table, double length) {
   ClosedForm result;
-  result.is = table.text("is");
+  result.formula = table.text("is");
   result.at = table.number("at", Dimension::length, Range::between(0, length, "m"));
   result.point = table.vector("point", Dimension::length);
   table.finish();
@@ -32,12 +32,12 @@ ClosedForm read_closed_form(StrictTable table, double length) {
 BatteryMotion read_motion(StrictTable table,
                           const std::function<Scene(const std::string& name)>& scene_of) {
   constexpr int least_count = 4;  // cubic interpolation between frames needs four
-  constexpr int most = 1000;
+  constexpr int most_requested_frames = 1000;
   table.only({"begin", "frames", "until"});
   BatteryMotion motion;
   motion.begin = scene_of(table.text("begin"));
-  motion.until = table.number("until", Dimension::time, Range::positive());
-  motion.frames = table.integer("frames", least_count, most);
+  motion.end_time = table.number("until", Dimension::time, Range::positive());
+  motion.frames = table.integer("frames", least_count, most_requested_frames);
   table.finish();
   return motion;
 }

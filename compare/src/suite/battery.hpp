@@ -12,16 +12,16 @@ namespace dlo::compare {
 
 /// Point of a rod's shape that is known in closed form.
 struct ClosedForm {
-  std::string is;         ///< the formula or the curve, in words
+  std::string formula;    ///< the formula or the curve, in words
   double at = 0;          ///< arc length [m]
   Eigen::Vector3d point;  ///< position of the rod there [m]
 };
 
 /// Motion of a scene: the rod is released at 0 s from the equilibrium of another scene.
 struct BatteryMotion {
-  Scene begin;       ///< scene of the rod before 0 s, whose equilibrium is the initial shape
-  double until = 0;  ///< end time [s], > 0
-  int frames = 0;    ///< number of requested frames, at equal intervals from 0 to `until`
+  Scene begin;          ///< scene of the rod before 0 s, whose equilibrium is the initial shape
+  double end_time = 0;  ///< end time [s], > 0
+  int frames = 0;       ///< number of requested frames, at equal intervals from 0 to `end_time`
 
   /// Returns the times of the frames [s].
   [[nodiscard]] std::vector<double> times() const;

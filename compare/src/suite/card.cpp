@@ -95,7 +95,7 @@ void add_scene(CardGroup& group, const CardScene& scene) {
      : status == RunStatus::not_supported ? group.not_supported
      : status == RunStatus::not_judged    ? group.not_judged
                                           : group.failed);
-  if (scene.right()) ++group.right;
+  if (scene.is_correct()) ++group.right;
   for (const SimulatorRun& run : scene.runs) group.seconds += run.seconds;
   for (const Cause& cause : scene.causes) {
     const auto known = std::find_if(group.causes.begin(), group.causes.end(),
@@ -182,7 +182,7 @@ std::string CardScene::problem() const {
   return {};
 }
 
-bool CardScene::right() const {
+bool CardScene::is_correct() const {
   return status() == RunStatus::solved && runs.back().error <= default_tolerance(1).allowed_m &&
          std::none_of(causes.begin(), causes.end(),
                       [](const Cause& cause) { return cause.defect; });

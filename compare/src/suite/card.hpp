@@ -27,7 +27,7 @@ struct CardScene {
   [[nodiscard]] std::string problem() const;
   /// Whether all runs are solved, no cause is a defect, and SimulatorRun::error at the largest N is
   /// at most 1 %, the default tolerance of `dlo check`.
-  [[nodiscard]] bool right() const;
+  [[nodiscard]] bool is_correct() const;
 };
 
 /// Results of a simulator on all scenes of a class.
@@ -35,7 +35,7 @@ struct CardGroup {
   std::string name;       ///< name of the class
   int scenes = 0;         ///< number of scenes
   int solved = 0;         ///< number of scenes that are solved
-  int right = 0;          ///< number of scenes with CardScene::right()
+  int right = 0;          ///< number of scenes with CardScene::is_correct()
   int not_supported = 0;  ///< number of scenes that are not supported
   int failed = 0;         ///< number of scenes that failed
   int not_judged = 0;     ///< number of scenes whose reference did not converge

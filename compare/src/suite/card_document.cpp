@@ -30,7 +30,7 @@ Json scene_card_json(const CardScene& scene) {
   return {{"id", scene.id},
           {"class", scene.group},
           {"status", to_string(scene.status())},
-          {"right", scene.right()},
+          {"right", scene.is_correct()},
           {"order", scene.order},
           {"causes", json_list(scene.causes, cause_json)},
           {"runs", json_list(scene.runs, run_json)}};

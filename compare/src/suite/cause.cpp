@@ -30,11 +30,11 @@ namespace limits = cause_limits;
 bool grows_with_elements(const StiffnessFactor& coarse, const StiffnessFactor& fine) {
   constexpr double least = 0.01;
   constexpr double most = 1;
-  constexpr double near = 0.15;
+  constexpr double proportionality_tolerance = 0.15;
   const double more = 1 / coarse.factor - 1;
   const double elements = static_cast<double>(fine.points - 1) / (coarse.points - 1);
   return more > least && more < most &&
-         std::abs((1 / fine.factor - 1) / (more * elements) - 1) < near;
+         std::abs((1 / fine.factor - 1) / (more * elements) - 1) < proportionality_tolerance;
 }
 
 constexpr double undefined = std::numeric_limits<double>::quiet_NaN();
@@ -112,12 +112,12 @@ class Diagnosis {
     const bool is_clamped =
         std::any_of(scene_.grippers.begin(), scene_.grippers.end(),
                     [](const Gripper& gripper) { return gripper.direction.has_value(); });
-    constexpr double half = 0.5;
+    constexpr double half_element = 0.5;
     if (is_clamped && !converges && best->clamp == ChainClamp::welded) {
-      add("first element welded", half,
+      add("first element welded", half_element,
           "the first element does not bend: half an element is too stiff at each clamp");
     } else if (is_clamped && !converges && best->clamp == ChainClamp::hinge) {
-      add("hinge at the clamp", half,
+      add("hinge at the clamp", half_element,
           "the hinge at the clamp has a spring of EI/h, which is too soft by half an element");
     }
     if (best->is_law_identified && best->law == energy_model::JointLaw::linear) {
@@ -239,7 +239,7 @@ class Diagnosis {
     constexpr double least = 0.25;
     constexpr double most = 5;
     constexpr int steps = 19;
-    constexpr double balanced = 5e-3;
+    constexpr double balanced_residual = 5e-3;
     constexpr double other = 0.2;
     const auto left = [&](const CardShape& shape, double power) {
       const std::optional<MomentBalance> balance = moment_balance(scene_, shape.shape, power);
@@ -249,7 +249,7 @@ class Diagnosis {
     const Scan scanned = scan(of_finest, least, most, steps);
     if (!scanned.is_bracketed()) return false;
     const Minimum best = minimum_near(of_finest, scanned);
-    if (!(best.value < balanced) || std::abs(best.x - 1) < other) return false;
+    if (!(best.value < balanced_residual) || std::abs(best.x - 1) < other) return false;
     if (!(left(coarsest(), best.x) < limits::rest_imbalance_limit)) return false;
     add("springs with a power of the angle", best.x,
         fmt::format(

@@ -60,12 +60,12 @@ struct StiffnessFactor {
 
 /// Reference with which a simulator's motion is compared.
 struct MotionReference {
-  ModelMotion motion;  ///< motion by the energy model, longer than `until`
-  double length = 0;   ///< length of the rod [m]
-  double until = 0;    ///< end time of the scene [s]
-  int frames = 0;      ///< number of requested frames
+  ModelMotion motion;   ///< motion by the energy model, longer than `end_time`
+  double length = 0;    ///< length of the rod [m]
+  double end_time = 0;  ///< end time of the scene [s]
+  int frames = 0;       ///< number of requested frames
   /// RMS distance of its points from their positions at time 0, over the requested frames [m].
-  double travel = 0;
+  double rms_displacement = 0;
   ModelMotion at_rest;  ///< equilibrium of the scene, as a motion
 };
 

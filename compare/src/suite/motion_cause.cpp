@@ -29,11 +29,11 @@ constexpr int terms = 12;
 using RodAt = std::function<Eigen::Vector3d(double time, double arc_length)>;
 
 double rms_from(const MarkerMotion& recorded, const RodAt& rod) {
-  double squares = 0;
+  double sum_of_squares = 0;
   for (const MarkerPosition& at : recorded.positions) {
-    squares += (at.position - rod(at.time, at.arc_length)).squaredNorm();
+    sum_of_squares += (at.position - rod(at.time, at.arc_length)).squaredNorm();
   }
-  return std::sqrt(squares / static_cast<double>(recorded.positions.size()));
+  return std::sqrt(sum_of_squares / static_cast<double>(recorded.positions.size()));
 }
 
 /// Causes with the RMS distance that each leaves [m].
@@ -42,8 +42,8 @@ using CausesLeft = std::vector<std::pair<Cause, double>>;
 /// Returns the fitted number of a cause with the RMS distance that it leaves [m]; that is infinite
 /// if the best number is at an end of its range. @param left  distance with a number
 Minimum best_parameter(double low, double high, const Function& residual) {
-  constexpr int steps = 100;
-  const Scan scanned = scan(residual, low, high, steps);
+  constexpr int scan_steps = 100;
+  const Scan scanned = scan(residual, low, high, scan_steps);
   if (!scanned.is_bracketed()) return {0, std::numeric_limits<double>::infinity()};
   return minimum_near(residual, scanned);
 }
@@ -64,7 +64,8 @@ CausesLeft fitted_causes(const MotionReference& reference, const MarkerMotion& r
   const ModelMotion& model = reference.motion;
   if (const auto lag =
           best_lag(recorded, model, -std::numeric_limits<double>::infinity(), Displacement::none)) {
-    causes.push_back({{"late or early", lag->lag / reference.until, lag_words(*lag)}, lag->rms_m});
+    causes.push_back(
+        {{"late or early", lag->lag / reference.end_time, lag_words(*lag)}, lag->rms_m});
   }
   const Minimum faster =
       best_parameter(1 / model_time_factor, model_time_factor, [&](double factor) {
@@ -74,14 +75,14 @@ CausesLeft fitted_causes(const MotionReference& reference, const MarkerMotion& r
   causes.push_back(
       {{"frequency wrong", faster.x, fmt::format("all goes {:.4g} times as fast", faster.x)},
        faster.value});
-  constexpr double most = 10;  // e-foldings over the whole time
-  const Minimum damped = best_parameter(0, most / reference.until, [&](double rate) {
+  constexpr double most_e_foldings = 10;  // e-foldings over the whole time
+  const Minimum damped = best_parameter(0, most_e_foldings / reference.end_time, [&](double rate) {
     return rms_from(recorded, [&](double time, double s) -> Eigen::Vector3d {
       const Eigen::Vector3d rest = reference.at_rest.at(0, s);
       return rest + std::exp(-rate * time) * (model.at(time, s) - rest);
     });
   });
-  const double stays = std::exp(-damped.x * reference.until);
+  const double stays = std::exp(-damped.x * reference.end_time);
   causes.push_back({{"damped", stays,
                      fmt::format("{:.3g} % of the motion is left at the end, and nothing damps the "
                                  "rod",
@@ -96,7 +97,7 @@ MotionReference motion_reference(const BatteryScene& scene) {
   const BatteryMotion& asked = scene.motion.value();
   const double length = scene.scene.length;
   const std::vector<double> s = equal_arc_lengths(length, points_along);
-  const double end = model_time_factor * asked.until;
+  const double end = model_time_factor * asked.end_time;
   const int count =
       static_cast<int>(std::ceil(model_time_factor * frames_per_requested * (asked.frames - 1))) +
       1;
@@ -107,44 +108,46 @@ MotionReference motion_reference(const BatteryScene& scene) {
       fewest_frames, solve_reference(scene.scene, Model::energy).sample(s).points);
   MotionReference reference{.motion = ModelMotion(0, end, length, std::move(moved.frames)),
                             .length = length,
-                            .until = asked.until,
+                            .end_time = asked.end_time,
                             .frames = asked.frames,
                             .at_rest = ModelMotion(0, end, length, at_rest)};
-  double squares = 0;
+  double sum_of_squares = 0;
   for (const double time : asked.times()) {
     for (const double at : s) {
-      squares += (reference.motion.at(time, at) - reference.motion.at(0, at)).squaredNorm();
+      sum_of_squares += (reference.motion.at(time, at) - reference.motion.at(0, at)).squaredNorm();
     }
   }
-  reference.travel = std::sqrt(squares / static_cast<double>(s.size()) / asked.frames);
+  reference.rms_displacement =
+      std::sqrt(sum_of_squares / static_cast<double>(s.size()) / asked.frames);
   return reference;
 }
 
 double motion_error(const MotionReference& reference, const MarkerMotion& recorded) {
-  const double interval = reference.until / (reference.frames - 1);
+  const double interval = reference.end_time / (reference.frames - 1);
   constexpr double rounding = 1e-6;
   const RecordedTimes times = recorded_times(recorded, reference.length);
   for (const double end : {times.first, times.last}) {
-    if (end >= -rounding * interval && end <= reference.until + rounding * interval) continue;
-    throw InputError(fmt::format("a frame at {:g} s (allowed: 0 to {:g} s)", end, reference.until));
+    if (end >= -rounding * interval && end <= reference.end_time + rounding * interval) continue;
+    throw InputError(
+        fmt::format("a frame at {:g} s (allowed: 0 to {:g} s)", end, reference.end_time));
   }
   if (2 * times.count < reference.frames || times.first > interval ||
-      times.last < reference.until - interval) {
+      times.last < reference.end_time - interval) {
     throw InputError(fmt::format(
         "{} frames from {:g} to {:g} s (allowed: {} or more, from 0 to {:g} s, each end within "
         "{:g} s)",
-        times.count, times.first, times.last, (reference.frames + 1) / 2, reference.until,
+        times.count, times.first, times.last, (reference.frames + 1) / 2, reference.end_time,
         interval));
   }
-  return rms_of(motion_residuals(recorded, reference.motion)) / reference.travel;
+  return rms_of(motion_residuals(recorded, reference.motion)) / reference.rms_displacement;
 }
 
 std::vector<Cause> motion_causes(const MotionReference& reference, const MarkerMotion& recorded) {
-  const double error = motion_error(reference, recorded) * reference.travel;
+  const double error = motion_error(reference, recorded) * reference.rms_displacement;
   if (!(error > error_floor * reference.length)) return {};
   MarkerMotion sparse{.file = recorded.file, .positions = {}};
-  constexpr std::size_t enough = 1000;
-  const std::size_t stride = 1 + recorded.positions.size() / enough;
+  constexpr std::size_t sufficient_points = 1000;
+  const std::size_t stride = 1 + recorded.positions.size() / sufficient_points;
   for (std::size_t i = 0; i < recorded.positions.size(); i += stride) {
     sparse.positions.push_back(recorded.positions[i]);
   }

@@ -90,7 +90,7 @@ Json answer_grippers(const Answer& answer, const Magnitudes& large) {
   Json result = Json::array();
   for (std::size_t i = 0; i < answer.first.grippers.size(); ++i) {
     const GripperLoad& load = answer.first.grippers[i];
-    result.push_back({{"at_m", answer.of.scene.grippers[i].at},
+    result.push_back({{"at_m", answer.battery_scene.scene.grippers[i].at},
                       {"force_N", answer_vector(load.force, large.force)},
                       {"force_bound_N",
                        bound_of_digits(answer.bounds.forces_N[i], load.force.norm(), large.force)},
@@ -122,9 +122,11 @@ Json answer_obstacles(const Answer& answer, const Magnitudes& large) {
 }
 
 Json answer_closed_form(const Answer& answer) {
-  if (!answer.of.closed_form) return {};
-  const ClosedForm& form = *answer.of.closed_form;
-  return {{"is", form.is}, {"at_m", form.at}, {"point_m", point_json(form.point, answer_decimals)}};
+  if (!answer.battery_scene.closed_form) return {};
+  const ClosedForm& form = *answer.battery_scene.closed_form;
+  return {{"is", form.formula},
+          {"at_m", form.at},
+          {"point_m", point_json(form.point, answer_decimals)}};
 }
 
 /// Writes one line for each key, and for each row of a list of lists or objects.
@@ -195,13 +197,13 @@ std::string motion_csv(const MotionAnswer& answer) {
 
 nlohmann::ordered_json answer_json(const Answer& answer) {
   const Solution& first = answer.first;
-  const Scene& scene = answer.of.scene;
+  const Scene& scene = answer.battery_scene.scene;
   const Magnitudes large = magnitudes(scene);
   Json result = {{"schema", answer_schema_name},
-                 {"id", answer.of.id},
-                 {"class", answer.of.group},
+                 {"id", answer.battery_scene.id},
+                 {"class", answer.battery_scene.group},
                  {"name", scene.name},
-                 {"isolates", answer.of.isolates},
+                 {"isolates", answer.battery_scene.isolates},
                  {"closed_form", answer_closed_form(answer)},
                  {"length_m", scene.length},
                  {"gamma", rounded(scene.gamma(), 0)},
@@ -214,10 +216,10 @@ nlohmann::ordered_json answer_json(const Answer& answer) {
                                                     std::abs(first.energy.total()), large.energy)},
                  {"grippers", answer_grippers(answer, large)},
                  {"obstacles", answer_obstacles(answer, large)}};
-  constexpr double few_digits = 1e6;
+  constexpr double rounding_scale = 1e6;
   result["other_equilibria"] = json_list(answer.others, [&](const OtherEquilibrium& other) -> Json {
     const auto short_number = [&](double value, double of) {
-      return std::round(value / of * few_digits) / few_digits * of;
+      return std::round(value / of * rounding_scale) / rounding_scale * of;
     };
     return {{"energy_J", rounded(short_number(other.energy_J, large.energy), large.energy)},
             {"stable", other.stable},
@@ -232,12 +234,12 @@ nlohmann::ordered_json answer_json(const Answer& answer) {
 
 nlohmann::ordered_json motion_json(const MotionAnswer& answer) {
   return {{"schema", motion_schema_name},
-          {"id", answer.of.id},
-          {"class", answer.of.group},
-          {"name", answer.of.scene.name},
-          {"isolates", answer.of.isolates},
-          {"length_m", answer.of.scene.length},
-          {"gamma", rounded(answer.of.scene.gamma(), 1)},
+          {"id", answer.battery_scene.id},
+          {"class", answer.battery_scene.group},
+          {"name", answer.battery_scene.scene.name},
+          {"isolates", answer.battery_scene.isolates},
+          {"length_m", answer.battery_scene.scene.length},
+          {"gamma", rounded(answer.battery_scene.scene.gamma(), 1)},
           {"methods", {to_string(Model::energy), answer.second_method}},
           {"points_bound_m", bound_of_points(answer.points_bound_m, motion_decimals)},
           {"times_s", places(answer.times, motion_decimals)},
@@ -310,15 +312,16 @@ void write_pack(const std::string& folder, const Pack& pack) {
         {"points_bound_over_length", bound_of_points(points_bound, decimals, scene.scene.length)}};
   };
   for (const Answer& answer : pack.answers) {
-    write_document(path / (answer.of.id + ".json"), answer_json(answer));
-    write_file(path / (answer.of.id + ".csv"), answer_csv(answer));
-    write_file(path / (answer.of.id + ".vtu"), answer_vtu(answer));
-    index["answers"].push_back(entry(answer.of, answer.bounds.points_m, answer_decimals));
+    write_document(path / (answer.battery_scene.id + ".json"), answer_json(answer));
+    write_file(path / (answer.battery_scene.id + ".csv"), answer_csv(answer));
+    write_file(path / (answer.battery_scene.id + ".vtu"), answer_vtu(answer));
+    index["answers"].push_back(
+        entry(answer.battery_scene, answer.bounds.points_m, answer_decimals));
   }
   for (const MotionAnswer& answer : pack.motions) {
-    write_document(path / (answer.of.id + ".json"), motion_json(answer));
-    write_file(path / (answer.of.id + ".csv"), motion_csv(answer));
-    index["answers"].push_back(entry(answer.of, answer.points_bound_m, motion_decimals));
+    write_document(path / (answer.battery_scene.id + ".json"), motion_json(answer));
+    write_file(path / (answer.battery_scene.id + ".csv"), motion_csv(answer));
+    index["answers"].push_back(entry(answer.battery_scene, answer.points_bound_m, motion_decimals));
   }
   write_file(path / "schema.json", answer_schema());
   write_file(path / "motion_schema.json", motion_schema());

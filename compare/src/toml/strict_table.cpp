@@ -23,9 +23,9 @@ std::string shown(const toml::node& node) {
   node.visit([&](const auto& value) { text << value; });
   std::string line = text.str();
   std::replace(line.begin(), line.end(), '\n', ' ');
-  constexpr std::size_t longest = 60;
-  if (line.size() > longest) {
-    line.resize(longest);
+  constexpr std::size_t longest_shown_line = 60;
+  if (line.size() > longest_shown_line) {
+    line.resize(longest_shown_line);
     line += "...";
   }
   return line;

@@ -20,7 +20,7 @@ constexpr double significance_level = 0.05;
 /// Weighted mean of estimates with weights 1 / (variance + between): its precision, and the
 /// weighted sum of squared distances from it.
 struct WeightedScatter {
-  double squares = 0;
+  double sum_of_squares = 0;
   double precision = 0;  // inverse variance of the mean
 };
 
@@ -34,7 +34,7 @@ WeightedScatter weighted_scatter(const std::vector<ShapeEstimate>& estimates, do
   }
   mean /= result.precision;
   for (const ShapeEstimate& one : estimates) {
-    result.squares += std::pow(one.value - mean, 2) / (one.variance + between);
+    result.sum_of_squares += std::pow(one.value - mean, 2) / (one.variance + between);
   }
   return result;
 }
@@ -44,11 +44,11 @@ WeightedScatter weighted_scatter(const std::vector<ShapeEstimate>& estimates, do
 double variance_between(const std::vector<ShapeEstimate>& estimates, double expected) {
   double low = 0;
   double high = 1;
-  while (weighted_scatter(estimates, high).squares > expected) high *= 4;
+  while (weighted_scatter(estimates, high).sum_of_squares > expected) high *= 4;
   constexpr int bisections = 60;
   for (int i = 0; i < bisections; ++i) {
     const double middle = (low + high) / 2;
-    (weighted_scatter(estimates, middle).squares > expected ? low : high) = middle;
+    (weighted_scatter(estimates, middle).sum_of_squares > expected ? low : high) = middle;
   }
   return high;
 }
@@ -172,15 +172,15 @@ std::optional<double> repeatability(const std::vector<Shape>& shapes, ArcLengths
     sum += at_places.back();
   }
   const auto count = static_cast<double>(shapes.size());
-  double squares = 0;
+  double sum_of_squares = 0;
   for (const Eigen::Matrix3Xd& points : at_places) {
     const Eigen::Matrix3Xd others = (sum - points) / (count - 1);
     for (int k = 0; k < places; ++k) {
-      squares += rule == ArcLengths::file ? (points.col(k) - others.col(k)).squaredNorm()
-                                          : squared_distance(points.col(k), others);
+      sum_of_squares += rule == ArcLengths::file ? (points.col(k) - others.col(k)).squaredNorm()
+                                                 : squared_distance(points.col(k), others);
     }
   }
-  return std::sqrt(squares / (places * count));
+  return std::sqrt(sum_of_squares / (places * count));
 }
 
 double share_beyond_chance(double share, std::size_t shapes) {
@@ -218,7 +218,7 @@ std::optional<ScatterBetweenShapes> scatter_between(const std::vector<ShapeEstim
   if (informative.size() < 2) return std::nullopt;
   const auto freedom = static_cast<double>(informative.size() - 1);
   const WeightedScatter together = weighted_scatter(informative, 0);
-  const double chance = gsl_distribution(gsl_cdf_chisq_Q, together.squares, freedom);
+  const double chance = gsl_distribution(gsl_cdf_chisq_Q, together.sum_of_squares, freedom);
   if (!(chance < significance_level)) return std::nullopt;
   const double between = variance_between(informative, freedom);
   const double with = gsl_distribution(gsl_cdf_tdist_Pinv, 0.975, freedom) /

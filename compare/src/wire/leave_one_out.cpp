@@ -22,8 +22,8 @@ constexpr double same_experiment_tolerance = 0.02;
 /// points, because nearest points on the rod depend on the other fitted numbers.
 Shape with_arc_lengths_along_points(Shape shape, double length) {
   const std::vector<double> s = arc_lengths_along(shape.points);
-  constexpr double whole = 0.97;
-  if (s.back() < whole * length) return shape;
+  constexpr double whole_rod_share = 0.97;
+  if (s.back() < whole_rod_share * length) return shape;
   for (std::size_t i = 0; i < s.size(); ++i) shape.arc_length[i] = s[i] * length / s.back();
   return shape;
 }
@@ -62,7 +62,7 @@ bool are_same_experiment(const Scene& a, const Scene& b) {
 
 std::vector<std::string> unfitted_assumptions(const std::vector<Scene>& scenes,
                                               const MaterialFitOptions& options) {
-  constexpr int enough = 3;
+  constexpr int enough_different_scenes = 3;
   int different = 0;
   for (auto scene = scenes.begin(); scene != scenes.end(); ++scene) {
     const auto is_same_scene = [&](const Scene& before) {
@@ -71,7 +71,7 @@ std::vector<std::string> unfitted_assumptions(const std::vector<Scene>& scenes,
     different += std::none_of(scenes.begin(), scene, is_same_scene) ? 1 : 0;
   }
   std::vector<std::string> result;
-  if (different >= enough) return result;
+  if (different >= enough_different_scenes) return result;
   if (options.natural_curvature_terms == 0) result.emplace_back("natural curvature");
   const bool clamped = std::ranges::any_of(scenes.front().grippers, [](const Gripper& gripper) {
     return gripper.direction.has_value();
@@ -98,7 +98,7 @@ Prediction leave_one_out(const std::vector<Scene>& scenes, const std::vector<Mea
                          const MaterialFitOptions& options, const MaterialFit& fit,
                          const Predict& predict) {
   Prediction result{.repeatability_m = repeatability_of(scenes, fit)};
-  double squares = 0;
+  double sum_of_squares = 0;
   double points = 0;
   for (std::size_t excluded = 0; excluded < scenes.size(); ++excluded) {
     const PredictedScene predicted = predict(excluded);
@@ -106,10 +106,10 @@ Prediction leave_one_out(const std::vector<Scene>& scenes, const std::vector<Mea
                                          predicted.known ? &*predicted.known : nullptr);
     result.shapes_m.push_back(rms);
     const auto count = static_cast<double>(shapes[excluded].points.cols());
-    squares += rms * rms * count;
+    sum_of_squares += rms * rms * count;
     points += count;
   }
-  result.rms_m = std::sqrt(squares / points);
+  result.rms_m = std::sqrt(sum_of_squares / points);
   return result;
 }
 

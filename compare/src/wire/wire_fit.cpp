@@ -25,21 +25,23 @@ constexpr double distant_log_modulus = 0.7;
 
 /// Rods and own numbers of each shape that are nearest to its points among several trials.
 struct NearestStart {
-  std::vector<double> squares;
+  std::vector<double> sum_of_squares;
   FittedRods::Rods rods;
   Eigen::VectorXd values;
 
-  [[nodiscard]] double sum() const { return std::accumulate(squares.begin(), squares.end(), 0.0); }
+  [[nodiscard]] double sum() const {
+    return std::accumulate(sum_of_squares.begin(), sum_of_squares.end(), 0.0);
+  }
 
   void keep_nearer(const WireProblem& problem, const FittedRods::State& state,
                    const Eigen::VectorXd& others) {
-    if (squares.empty()) {
-      *this = {state.squares, state.rods, others};
+    if (sum_of_squares.empty()) {
+      *this = {state.sum_of_squares, state.rods, others};
       return;
     }
-    for (std::size_t i = 0; i < squares.size(); ++i) {
-      if (!(state.squares[i] < squares[i])) continue;
-      squares[i] = state.squares[i];
+    for (std::size_t i = 0; i < sum_of_squares.size(); ++i) {
+      if (!(state.sum_of_squares[i] < sum_of_squares[i])) continue;
+      sum_of_squares[i] = state.sum_of_squares[i];
       rods[i] = state.rods[i];
       for (std::size_t k = 0; k < problem.numbers.size(); ++k) {
         const auto number = static_cast<Eigen::Index>(k);
@@ -63,20 +65,20 @@ bool is_about_both_axes(const WireProblem& problem) {
 /// about both axes has several directions.
 std::vector<NearestStart> nearest_by_curvature(const WireProblem& problem,
                                                const Eigen::VectorXd& from, FittedRods& rods) {
-  constexpr std::array turns = {8.0, 5.0, 3.0, 1.5, 0.0, -1.5, -3.0, -5.0, -8.0};
+  constexpr std::array mean_turns = {8.0, 5.0, 3.0, 1.5, 0.0, -1.5, -3.0, -5.0, -8.0};
   constexpr int angles = 6;
   const bool rotates_rod =
       std::ranges::any_of(problem.numbers, [](const WireNumber& one) { return one.rotates_rod; });
   const bool both_axes = is_about_both_axes(problem);
   // Negative turns represent the opposite axes.
   const int directions = both_axes ? angles / 2 : 1;
-  std::vector<NearestStart> found(directions * turns.size());
+  std::vector<NearestStart> found(directions * mean_turns.size());
   for (int i = 0; i < directions * (rotates_rod ? angles : 1); ++i) {
     const int direction = i % directions;
     const int angle = i / directions;
     const auto add_best_start = [&](std::size_t k) {
       Eigen::VectorXd values = from;
-      const double curvature = turns[k] / problem.scenes.front().length;
+      const double curvature = mean_turns[k] / problem.scenes.front().length;
       const double about = 2 * std::numbers::pi * direction / angles;
       values[problem.first_remaining_number()] = curvature * std::cos(about);
       if (both_axes) values[problem.first_remaining_number() + 1] = curvature * std::sin(about);
@@ -84,12 +86,12 @@ std::vector<NearestStart> nearest_by_curvature(const WireProblem& problem,
         if (!problem.numbers[n].rotates_rod) continue;
         values[static_cast<Eigen::Index>(n)] = 2 * std::numbers::pi * angle / angles;
       }
-      found[direction * turns.size() + k].keep_nearer(problem, rods.state(values), values);
+      found[direction * mean_turns.size() + k].keep_nearer(problem, rods.state(values), values);
     };
     rods.clear_initial_rods();
-    for (std::size_t k = 0; k < turns.size(); ++k) add_best_start(k);
+    for (std::size_t k = 0; k < mean_turns.size(); ++k) add_best_start(k);
     rods.clear_initial_rods();
-    for (std::size_t k = turns.size(); k-- > 0;) add_best_start(k);
+    for (std::size_t k = mean_turns.size(); k-- > 0;) add_best_start(k);
   }
   return found;
 }

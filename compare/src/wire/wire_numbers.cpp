@@ -183,9 +183,10 @@ void add_rolls(std::vector<WireNumber>& numbers, Scene scene, std::size_t shape,
 Eigen::Vector3d horizontal_normal(const Eigen::Vector3d& direction,
                                   const Eigen::Vector3d& gravity) {
   const Eigen::Vector3d level = gravity.cross(direction);
-  constexpr double upright = 1e-6;
-  return level.norm() > upright * gravity.norm() ? Eigen::Vector3d(level.normalized())
-                                                 : Eigen::Vector3d(direction.unitOrthogonal());
+  constexpr double vertical_tolerance = 1e-6;
+  return level.norm() > vertical_tolerance * gravity.norm()
+             ? Eigen::Vector3d(level.normalized())
+             : Eigen::Vector3d(direction.unitOrthogonal());
 }
 
 /// Adds the tilt about the normal of the shapes' plane, or, for shapes in space, about all level
@@ -234,7 +235,7 @@ std::string why_no_camera_tilt(const std::vector<Scene>& scenes,
                                const std::vector<MeasuredShape>& shapes) {
   const Scene& first = scenes.front();
   const std::optional<Eigen::Vector3d> normal = plane_of(first, shapes.front());
-  constexpr double parallel = 1e-6;
+  constexpr double parallel_tolerance = 1e-6;
   for (std::size_t i = 0; i < scenes.size(); ++i) {
     if (!is_bent_by_weight_alone(scenes[i])) {
       return fmt::format(
@@ -244,8 +245,8 @@ std::string why_no_camera_tilt(const std::vector<Scene>& scenes,
     }
     const std::optional<Eigen::Vector3d> other = plane_of(scenes[i], shapes[i]);
     const bool in_one_plane = other.has_value() == normal.has_value() &&
-                              (!normal || normal->cross(*other).norm() < parallel);
-    if (!in_one_plane || !scenes[i].gravity.isApprox(first.gravity, parallel)) {
+                              (!normal || normal->cross(*other).norm() < parallel_tolerance);
+    if (!in_one_plane || !scenes[i].gravity.isApprox(first.gravity, parallel_tolerance)) {
       return fmt::format(
           "{}: its plane or gravity differs from that of {}, so one camera tilt cannot apply to "
           "both (allowed: shapes in one plane, or all in space, under one gravity)",

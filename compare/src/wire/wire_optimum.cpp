@@ -47,7 +47,7 @@ WireErrors estimate_errors(const GaussNewton& fit, Eigen::Index frames,
                            const std::optional<double>& noise, double least_noise) {
   WireErrors errors{.variance = fit.variance(),
                     .freedom = fit.freedom(),
-                    .squares = fit.deviance(),
+                    .sum_of_squares = fit.deviance(),
                     .freedom_of_squares = fit.freedom()};
   if (!(fit.variance() > least_noise * least_noise)) return errors;
   const CorrelationEstimate estimate = correlation_of(fit.series());
@@ -61,7 +61,8 @@ WireErrors estimate_errors(const GaussNewton& fit, Eigen::Index frames,
   const CorrelationEffect effect = correlation_effect(fit.series(), frames, errors.correlation);
   const double expected = errors.variance * effect.residual_factor * errors.freedom;
   errors.freedom_of_squares = effect.degrees_of_freedom;
-  errors.squares = fit.linear().residual.squaredNorm() / expected * errors.freedom_of_squares;
+  errors.sum_of_squares =
+      fit.linear().residual.squaredNorm() / expected * errors.freedom_of_squares;
   return errors;
 }
 
@@ -70,7 +71,7 @@ WireErrors estimate_errors(const GaussNewton& fit, Eigen::Index frames,
 /// many independent ones.
 double effective_variance(const WireErrors& errors, const GaussNewton& fit) {
   if (!errors.are_correlated()) return errors.variance;
-  const Eigen::VectorXd nothing = Eigen::VectorXd::Zero(fit.before().size());
+  const Eigen::VectorXd nothing = Eigen::VectorXd::Zero(fit.prior_inverse_deviations().size());
   const double independent = posterior(fit.linear(), 1, nothing)(0, 0);
   const double correlated =
       sandwich_covariance(fit.series(), fit.linear(), 1, nothing, errors.correlation, 1)(0, 0);
@@ -116,11 +117,12 @@ FittedRods WireProblem::rods(int terms) const {
 }
 
 double WireProblem::lowest() const {
-  constexpr double ropes_load = 1e5;  // w l^3 / (EI)
-  constexpr double two_decades = 1e-2;
+  constexpr double rope_gamma = 1e5;  // w l^3 / (EI)
+  constexpr double largest_modulus_reduction = 1e-2;
   double load = 0;
   for (const Scene& scene : scenes) load = std::max(load, scene.gamma());
-  return std::log(std::max(options.smallest_ratio, std::min(load / ropes_load, two_decades)));
+  return std::log(
+      std::max(options.smallest_ratio, std::min(load / rope_gamma, largest_modulus_reduction)));
 }
 
 GaussNewtonOptions WireProblem::steps() const {
@@ -152,7 +154,8 @@ Eigen::MatrixXd covariance_of_numbers(const WireErrors& errors, const GaussNewto
     const double variance =
         noise ? errors.variance : variance_under(fit.series(), likely.covariance, frames).variance;
     sum += likely.weight * sandwich_covariance(fit.series(), fit.linear(), fit.weight(),
-                                               fit.before(), likely.covariance, variance);
+                                               fit.prior_inverse_deviations(), likely.covariance,
+                                               variance);
   }
   return sum;
 }
@@ -229,7 +232,7 @@ std::optional<double> WireOptimum::end(double side) {
   const double linear = quantile() * std::sqrt(covariance_(0, 0));
   const GaussNewtonOptions range = problem_.steps();
   const double farthest = side > 0 ? range.highest - values()[0] : values()[0] - range.lowest;
-  constexpr double jump = 4;
+  constexpr double largest_root_ratio = 4;
   double distance = linear;
   double before = 0;          // distance of the previous step
   double reached_before = 0;  // root of the deviance at the previous step
@@ -237,7 +240,7 @@ std::optional<double> WireOptimum::end(double side) {
     if (!(distance < farthest)) return std::nullopt;
     const double excess = excess_deviance(values()[0] + side * distance);
     const double reached = std::sqrt(std::max(0.0, excess));
-    if (!(reached < jump * wanted)) return linear;
+    if (!(reached < largest_root_ratio * wanted)) return linear;
     if (std::abs(reached - wanted) <= end_tolerance * wanted) break;
     // A secant step; the root is about proportional to the distance, with value 0 at 0.
     const double slope = (reached - reached_before) / (distance - before);

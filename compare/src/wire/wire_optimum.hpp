@@ -64,7 +64,7 @@ struct WireErrors {
   /// Sum of squares of the residuals divided by the variance, and its degrees of freedom. For
   /// correlated errors these are Satterthwaite's, since residuals determine the correlation length
   /// hardly better than their variance.
-  double squares = 0;
+  double sum_of_squares = 0;
   double freedom_of_squares = 0;
 
   [[nodiscard]] bool are_correlated() const { return correlation.share > 0; }

@@ -63,11 +63,12 @@ class WireIntervals {
   /// no noise is given.
   [[nodiscard]] double misfit(MaterialFit& fit) const {
     if (!problem_.options.noise) return 1;
-    constexpr double significant = 0.05;
-    const double squares = optimum_.errors().squares;
+    constexpr double significance_level = 0.05;
+    const double sum_of_squares = optimum_.errors().sum_of_squares;
     const double freedom = optimum_.errors().freedom_of_squares;
-    if (!(gsl_distribution(gsl_cdf_chisq_Q, squares, freedom) < significant)) return 1;
-    const double times = std::sqrt(squares / freedom);
+    if (!(gsl_distribution(gsl_cdf_chisq_Q, sum_of_squares, freedom) < significance_level))
+      return 1;
+    const double times = std::sqrt(sum_of_squares / freedom);
     add_warning(fit,
                 fmt::format("the residuals are {:.3g} times what the given noise explains; the "
                             "interval is as much wider",
@@ -238,12 +239,13 @@ void set_fit_errors(const WireProblem& problem, const WireOptimum& optimum, Mate
 
 void set_fitted_shapes(const WireProblem& problem, WireOptimum& optimum, MaterialFit& fit) {
   const std::vector<Alignment> alignments = optimum.alignments();
-  double squares = 0;
+  double sum_of_squares = 0;
   for (std::size_t i = 0; i < alignments.size(); ++i) {
-    squares += alignments[i].mean_square * static_cast<double>(alignments[i].shape.points.cols());
+    sum_of_squares +=
+        alignments[i].mean_square * static_cast<double>(alignments[i].shape.points.cols());
     fit.shapes.push_back({problem.scenes[i].name, alignments[i], {}});
   }
-  fit.rms_m = std::sqrt(squares / static_cast<double>(problem.measured.points()));
+  fit.rms_m = std::sqrt(sum_of_squares / static_cast<double>(problem.measured.points()));
 }
 
 /// Adds a warning if a rod was fitted in its plane but would leave it.
@@ -266,7 +268,7 @@ void warn_of_out_of_plane_rods(const WireProblem& problem, const WireOptimum& op
 
 /// Adds a warning if clamps or a camera deviate more than their tolerances allow.
 void note_contradicted_tolerances(MaterialFit& fit) {
-  constexpr double likely = 2.5;  // standard deviations
+  constexpr double reported_excess = 2.5;  // standard deviations
   const auto excess = [](const FittedNumber& number) {
     const bool has_tolerance = number.unit == "rad" || number.unit == "m";
     return has_tolerance ? std::abs(number.value) / number.prior_deviation : 0;
@@ -274,7 +276,7 @@ void note_contradicted_tolerances(MaterialFit& fit) {
   const auto farthest = std::max_element(
       fit.others.begin(), fit.others.end(),
       [&](const FittedNumber& a, const FittedNumber& b) { return excess(a) < excess(b); });
-  if (farthest == fit.others.end() || !(excess(*farthest) > likely)) return;
+  if (farthest == fit.others.end() || !(excess(*farthest) > reported_excess)) return;
   add_warning(fit,
               fmt::format("the shapes contradict a given standard deviation: {} deviates by {:.2g} "
                           "times this value; give a larger one",

@@ -51,7 +51,7 @@ std::optional<double> newton_step(const ShootingSystem& system, const Triplets& 
     point = system.moved(point, step);
     ++integrations;
     const bool closed = system.evaluate(point, trial_equations, nullptr) &&
-                        trial_equations.norm() < system.closed();
+                        trial_equations.norm() < system.closed_gap_tolerance();
     return closed ? std::optional(largest) : std::nullopt;
   }
   for (double part = system.allowed_step_share(point, step);
@@ -105,7 +105,7 @@ std::optional<double> levenberg_step(const ShootingSystem& system, const Triplet
     const ShootingPoint trial = system.moved(point, *step);
     const double largest = step->lpNorm<Eigen::Infinity>();
     const double allowed =
-        largest < last_newton_step ? system.closed() : tried.left * equations.norm();
+        largest < last_newton_step ? system.closed_gap_tolerance() : tried.left * equations.norm();
     ++integrations;
     if (system.allowed_step_share(point, *step) < 1 ||
         !system.evaluate(trial, trial_equations, nullptr) || trial_equations.norm() > allowed) {

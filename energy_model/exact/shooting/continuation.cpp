@@ -17,12 +17,12 @@ namespace dlo::energy_model {
 namespace {
 
 // Shots of a step after which the next one is longer; Newton's method needs two per iteration.
-constexpr int few_integrations = 12;
+constexpr int step_growth_integrations = 12;
 constexpr double step_growth = 1.6;  // ratio of a longer step to the one before it
 // Maximum number of Newton iterations; more are slower than a shorter step.
 constexpr int step_iterations = 12;
-constexpr double most_turn = 0.5;         // largest change of a tangent in a step
-constexpr double most_correction = 0.15;  // largest error of a predicted tangent
+constexpr double largest_tangent_change = 0.5;     // largest change of a tangent in a step
+constexpr double largest_prediction_error = 0.15;  // largest error of a predicted tangent
 // Local error of the integrator before the end of the branch.
 constexpr double branch_tolerance = 1e-10;
 
@@ -143,9 +143,10 @@ class Continuation {
     SpanEquilibrium found = shoot(span, next, start);
     if (!found.converged) return 0;
     const std::vector<RodState> states = states_at_nodes(found, span);
-    if (largest_change(states, now_.nodes) > most_turn) return 0;
-    if (!before_.nodes.empty() && largest_change(states, start) > most_correction) return 0;
-    const double factor = found.integrations <= few_integrations ? step_growth : 1;
+    if (largest_change(states, now_.nodes) > largest_tangent_change) return 0;
+    if (!before_.nodes.empty() && largest_change(states, start) > largest_prediction_error)
+      return 0;
+    const double factor = found.integrations <= step_growth_integrations ? step_growth : 1;
     if (!family_.stable || found.stable()) {
       accept(next, std::move(found));
       return factor;

@@ -14,9 +14,9 @@ constexpr int most_flow_steps = 200;
 constexpr int flow_iterations = 10;
 // Duration of the first step, in the rod's units: the rod bends in about 1 / 40.
 constexpr double first_duration = 0.01;
-constexpr double shortest = 1e-8;       // duration of the shortest step
-constexpr double longest = 1e8;         // duration of the longest step
-constexpr double most_flow_turn = 0.4;  // largest rotation of a tangent in one step [rad]
+constexpr double shortest = 1e-8;              // duration of the shortest step
+constexpr double longest = 1e8;                // duration of the longest step
+constexpr double largest_flow_rotation = 0.4;  // largest rotation of a tangent in one step [rad]
 constexpr double small_flow_rotation =
     0.1;  // rotation in a step below which the next step is longer [rad]
 // Rotation in a step of at least settled_duration at which the flow ends [rad].
@@ -83,7 +83,7 @@ SpanEquilibrium follow_gradient(const RodSpan& span, const RodMesh& mesh,
     failed.integrations += result.integrations;
     std::vector<Eigen::Matrix3d> reached = frames_of(result.nodes);
     const double turn = largest_rotation(span, reached, aim);
-    if (!result.converged || turn > most_flow_turn) {
+    if (!result.converged || turn > largest_flow_rotation) {
       duration /= 4;
       wait = steps_after_failure;
       continue;
@@ -95,8 +95,9 @@ SpanEquilibrium follow_gradient(const RodSpan& span, const RodMesh& mesh,
       SpanEquilibrium equilibrium = shoot_span(span, mesh, start, frames, options);
       equilibrium.integrations += failed.integrations;
       failed.integrations = equilibrium.integrations;
-      const bool near = equilibrium.converged && equilibrium.s.size() == mesh.s.size() &&
-                        largest_rotation(span, frames_of(equilibrium.nodes), aim) < most_flow_turn;
+      const bool near =
+          equilibrium.converged && equilibrium.s.size() == mesh.s.size() &&
+          largest_rotation(span, frames_of(equilibrium.nodes), aim) < largest_flow_rotation;
       if (near && equilibrium.stable()) return equilibrium;
       if (near && equilibrium.stability.s.size() > 0 && ++departures <= most_flow_departures) {
         start = equilibrium.nodes;

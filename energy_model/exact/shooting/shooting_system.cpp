@@ -11,7 +11,8 @@
 namespace dlo::energy_model {
 namespace {
 
-constexpr double largest_turn = 0.5;  // largest rotation of a tangent in one Newton step [rad]
+constexpr double largest_tangent_rotation =
+    0.5;  // largest rotation of a tangent in one Newton step [rad]
 // Largest step of a contact, divided by the distance of its neighbouring fixed nodes or contacts.
 constexpr double longest_share = 0.3;
 
@@ -151,7 +152,7 @@ double ShootingSystem::allowed_step_share(const ShootingPoint& point,
     turn = std::max(turn, spin.cross(node.t()).norm());
     at += unknowns_per_node();
   }
-  double part = turn > largest_turn ? largest_turn / turn : 1;
+  double part = turn > largest_tangent_rotation ? largest_tangent_rotation / turn : 1;
   for (const Share& share : shares_) {
     for (const Eigen::Index node : {share.before, share.after}) {
       const Eigen::Index unknown = arc_length_[static_cast<std::size_t>(node)];

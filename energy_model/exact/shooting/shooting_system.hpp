@@ -63,7 +63,7 @@ class ShootingSystem {
 
   /// Returns the size of gaps that counts as closed. Integrator steps change discontinuously as the
   /// nodes move, so that gaps cannot be closed below the tolerance.
-  [[nodiscard]] double closed() const { return std::max(1e-11, 10 * tolerance_); }
+  [[nodiscard]] double closed_gap_tolerance() const { return std::max(1e-11, 10 * tolerance_); }
 
   /// Returns the initial guess, projected to the plane if the motion is restricted to it.
   [[nodiscard]] ShootingPoint start() const { return {mesh_.s, start_, start_forces()}; }

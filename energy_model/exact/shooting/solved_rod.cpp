@@ -62,7 +62,7 @@ double energy_of_couples(const Problem& problem, const RodSpan& span,
                          const SpanEquilibrium& equilibrium, double tolerance) {
   if (!span.plane) return 0;
   // So many that the tangent rotates by less than pi between two points.
-  constexpr Eigen::Index points = 513;
+  constexpr Eigen::Index sample_count = 513;
   const Eigen::Vector3d normal = span.plane->x.cross(span.plane->y);
   double energy = 0;
   for (const RodSpan::Load& load : span.loads) {
@@ -70,13 +70,13 @@ double energy_of_couples(const Problem& problem, const RodSpan& span,
     const double at = (span.begin + load.at) * problem.length;
     const CoupleZero zero = couple_zero(problem, {.at = at, .torque = load.couple});
     const double from = std::clamp(zero.at / problem.length - span.begin, 0.0, span.length);
-    const Eigen::VectorXd s = Eigen::VectorXd::LinSpaced(points, from, load.at);
+    const Eigen::VectorXd s = Eigen::VectorXd::LinSpaced(sample_count, from, load.at);
     std::vector<double> sorted(s.begin(), s.end());
     if (load.at < from) std::reverse(sorted.begin(), sorted.end());
     Eigen::Matrix3Xd t = tangents_of(states_at(equilibrium, span, sorted, tolerance));
     if (load.at < from) t = t.rowwise().reverse().eval();
     Eigen::Vector3d before = zero.direction;
-    for (Eigen::Index i = 0; i < points; ++i) {
+    for (Eigen::Index i = 0; i < sample_count; ++i) {
       const Eigen::Vector3d here = t.col(i);
       energy -=
           load.couple.dot(normal) * std::atan2(normal.dot(before.cross(here)), before.dot(here));
@@ -137,7 +137,7 @@ Equilibrium assemble(const Problem& problem, SolvedRod solved, double tolerance)
                             .spin = {}};
   Energies energy;
   bool unjudged = false;  // whether couples act on a shape that leaves its plane
-  constexpr double flat = 1e-6;
+  constexpr double plane_tolerance = 1e-6;
   for (std::size_t i = 0; i < rod->spans.size(); ++i) {
     const RodSpan& span = rod->spans[i];
     const SpanEquilibrium& equilibrium = rod->equilibria[i];
@@ -158,7 +158,8 @@ Equilibrium assemble(const Problem& problem, SolvedRod solved, double tolerance)
     energy.stretch += equilibrium.energy.stretch;
     energy.load +=
         equilibrium.energy.load + energy_of_couples(problem, span, equilibrium, tolerance);
-    unjudged = unjudged || (span.has_couples() && out_of_plane(span, equilibrium.nodes) > flat);
+    unjudged =
+        unjudged || (span.has_couples() && out_of_plane(span, equilibrium.nodes) > plane_tolerance);
     add_reactions(problem, span, equilibrium, result.grips);
     add_twists(problem, span, equilibrium, result.twists);
     stability.negative += equilibrium.stability.negative;

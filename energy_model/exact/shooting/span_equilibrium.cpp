@@ -80,7 +80,7 @@ SpanEquilibrium close_span(const RodSpan& span, const RodMesh& mesh,
     equilibrium.contacts.nodes[k].force = point.forces[k];
   }
   if (!equilibrium.converged) return equilibrium;
-  equilibrium.converged = equilibrium.residual <= system.closed();
+  equilibrium.converged = equilibrium.residual <= system.closed_gap_tolerance();
   equilibrium.message = equilibrium.converged ? "converged" : "the rod has a gap at a node";
   return equilibrium;
 }

@@ -26,16 +26,17 @@ constexpr Eigen::Index most_intervals = 1000;
 constexpr int search_iterations = 30;
 constexpr double start_tolerance = 1e-6;  // local error of the integrator along a polygon
 constexpr double polygons_share = 0.5;    // share of the remaining time for relaxing polygons
-constexpr double most_bend = 0.3;  // largest rotation of a stress-free polygon at a node [rad]
+constexpr double largest_node_rotation =
+    0.3;  // largest rotation of a stress-free polygon at a node [rad]
 
 /// Whether two equilibria are equal. The frames of a round rod without twist are arbitrary, so that
 /// only its tangents are compared.
 bool are_equal_equilibria(const RodSpan& span, const SpanEquilibrium& a, const SpanEquilibrium& b) {
-  constexpr double coarse = 1e-10;
+  constexpr double sample_tolerance = 1e-10;
   const Eigen::VectorXd probes = Eigen::VectorXd::LinSpaced(33, 0, span.length);
   const std::vector<double> s(probes.begin(), probes.end());
-  const std::vector<RodState> first = states_at(a, span, s, coarse);
-  const std::vector<RodState> second = states_at(b, span, s, coarse);
+  const std::vector<RodState> first = states_at(a, span, s, sample_tolerance);
+  const std::vector<RodState> second = states_at(b, span, s, sample_tolerance);
   double distance = 0;
   for (std::size_t i = 0; i < s.size(); ++i) {
     const Eigen::Matrix3d change = first[i].R - second[i].R;
@@ -223,7 +224,7 @@ void check_load(const RodSpan& span) {
 double resolving_interval(const RodSpan& span, double force) {
   double longest = longest_interval(span, force);
   for (const Eigen::Vector3d& bend : sample_natural_strains(span, 32)) {
-    longest = std::min(longest, most_bend / std::max(bend.norm(), 1.0));
+    longest = std::min(longest, largest_node_rotation / std::max(bend.norm(), 1.0));
   }
   return longest;
 }

@@ -18,7 +18,8 @@ constexpr int most_integrations = 20000;  // maximum number of shots of a scan
 constexpr int deepest_cell = 6;           // maximum number of halvings of a cell of the scan
 // Allowed error of the cubic in a cell, divided by the residual there.
 constexpr double cell_tolerance = 0.02;
-constexpr double double_root = 1e-11;  // residual of a double root: rounding error of a shot
+constexpr double double_root_residual =
+    1e-11;  // residual of a double root: rounding error of a shot
 
 /// Tip angle of a shot, its residual at the clamp, and the derivative of the residual by the tip
 /// angle. The residual is the sine of half the error of the clamp's angle, which is zero at every
@@ -261,7 +262,7 @@ class TipScan {
     // If the residual approaches zero from both ends, the cell contains two roots or none.
     if (low.residual * low.slope >= 0 || high.residual * high.slope <= 0) return;
     const ScanPoint extremum = root(&ScanPoint::slope, low, high);
-    if (!std::isfinite(extremum.residual) || std::abs(extremum.residual) < double_root) {
+    if (!std::isfinite(extremum.residual) || std::abs(extremum.residual) < double_root_residual) {
       add(extremum);
     } else if (extremum.residual * low.residual < 0) {
       add(root(&ScanPoint::residual, low, extremum));
@@ -307,10 +308,10 @@ bool tip_can_be_scanned(const RodSpan& span) {
       span.parts.size() != 1 || !part.section.slope.isZero(0) || part.section.stretch > 0) {
     return false;
   }
-  constexpr double largest_parallel = 4e5;
-  constexpr double largest = 60;
+  constexpr double largest_parallel_load = 4e5;
+  constexpr double largest_nonparallel_load = 60;
   const TipShooter shooter(span, 0, Deadline());
-  return shooter.load() <= (shooter.parallel() ? largest_parallel : largest);
+  return shooter.load() <= (shooter.parallel() ? largest_parallel_load : largest_nonparallel_load);
 }
 
 SpanSearchResult scan_tip(const RodSpan& span, double tolerance, const Deadline& deadline) {

@@ -35,7 +35,7 @@ class Layout {
     if (!place_contacts() || !are_contacts_separate()) return std::nullopt;
     start_.states =
         states_of(start_.span, start_.mesh, problem_, shape_, arc_length_rounding, tolerance);
-    if (!press(tolerance)) return std::nullopt;
+    if (!set_lying_forces(tolerance)) return std::nullopt;
     return std::move(start_);
   }
 
@@ -134,7 +134,7 @@ class Layout {
 
   /// Sets n of parts that lie. At the begin its component across the surface follows from the lying
   /// conditions; from there on the pressure of the surface is integrated.
-  [[nodiscard]] bool press(double tolerance) {
+  [[nodiscard]] bool set_lying_forces(double tolerance) {
     for (const PlacedContact& contact : start_.contacts) {
       for (Eigen::Index i = contact.begin; i < contact.end; ++i) {
         RodState& state = start_.states[static_cast<std::size_t>(i)];

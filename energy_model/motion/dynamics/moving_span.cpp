@@ -224,7 +224,7 @@ class MovingSpan {
   /// pins can rotate freely.
   [[nodiscard]] Eigen::VectorXd equilibrium_rates(SpanDynamics& model,
                                                   const SpanInstant& at) const {
-    constexpr double step = 1e-5;  // time step, whose square is the error
+    constexpr double difference_step = 1e-5;  // time step, whose square is the error
     const Eigen::Index n = model.size();
     const Eigen::Index m = model.constraints();
     const Eigen::VectorXd still = Eigen::VectorXd::Zero(n);
@@ -244,10 +244,11 @@ class MovingSpan {
     }
     matrix.topLeftCorner(n, n) = model.stiffness(multipliers);
     const Eigen::VectorXd change =
-        (residual(at.time + step) - residual(at.time - step)) / (2 * step);
+        (residual(at.time + difference_step) - residual(at.time - difference_step)) /
+        (2 * difference_step);
     Eigen::CompleteOrthogonalDecomposition<Eigen::MatrixXd> solver;
-    constexpr double free = 1e-9;
-    solver.setThreshold(free);
+    constexpr double zero_pivot_threshold = 1e-9;
+    solver.setThreshold(zero_pivot_threshold);
     return -solver.compute(matrix).solve(change).head(n);
   }
 
@@ -304,7 +305,7 @@ class MovingSpan {
   }
 
   /// Copies the integrator's statistics.
-  void take(const SpanIntegrator& integrator, SpanRun& run) const {
+  void copy_statistics(const SpanIntegrator& integrator, SpanRun& run) const {
     run.steps = integrator.steps();
     run.smallest_step = integrator.smallest_step() * time_;
     run.error = integrator.error();
@@ -391,7 +392,7 @@ class MovingSpan {
       result.frames.push_back(frame(integrator, model, at));
     }
     result.left_plane = left_plane;
-    take(integrator, result);
+    copy_statistics(integrator, result);
     if (is_too_deep() && !deadline.passed()) {
       result.message = "a rigid obstacle is struck too hard for the depth that contact may have";
     }

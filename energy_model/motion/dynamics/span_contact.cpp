@@ -22,11 +22,12 @@ ContactGrid::ContactGrid(const std::vector<Span::Obstacle>& obstacles,
                          const PositionOperator& reach, const ContactLaw& law)
     : law_(law) {
   if (obstacles.empty()) return;
-  constexpr double widest = 1.0 / 128;
-  constexpr double closest = 1.0 / 4096;
+  constexpr double largest_spacing = 1.0 / 128;
+  constexpr double smallest_spacing = 1.0 / 4096;
   const bool flat = std::all_of(obstacles.begin(), obstacles.end(),
                                 [](const Span::Obstacle& o) { return o.body.is_half_space(); });
-  const double spacing = flat ? widest : std::clamp(2 * law.depth, closest, widest);
+  const double spacing =
+      flat ? largest_spacing : std::clamp(2 * law.depth, smallest_spacing, largest_spacing);
   for (const Element& element : reach.elements()) {
     const auto parts =
         static_cast<Eigen::Index>(std::max(2.0, std::ceil(element.length / spacing)));

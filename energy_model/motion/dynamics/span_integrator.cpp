@@ -229,8 +229,8 @@ std::string SpanIntegrator::project(SpanInstant& at) {
     }
     Eigen::VectorXd step = yields * solver.solve(residuals.col(0));
     if (!step.allFinite()) break;
-    constexpr double longest = 0.5;
-    if (step.norm() > longest) step *= longest / step.norm();
+    constexpr double longest_newton_step = 0.5;
+    if (step.norm() > longest_newton_step) step *= longest_newton_step / step.norm();
     at.x -= step;
     before = residual;
   }

@@ -67,8 +67,8 @@ struct VibratingSpan {
 
   /// Returns the displacement by a mode (derivatives of the tangents, nodes x 3) of the point at an
   /// arc length, along the span's axes.
-  [[nodiscard]] Eigen::Vector3d moved(double at, double length,
-                                      const Eigen::MatrixX3d& mode) const {
+  [[nodiscard]] Eigen::Vector3d displacement(double at, double length,
+                                             const Eigen::MatrixX3d& mode) const {
     const double s = std::clamp(placed.s_of(at, length), 0.0, placed.span.length);
     return mode.transpose() * reach.at(s);
   }
@@ -93,7 +93,7 @@ class RodVibrations {
         count_(options.count) {}
 
   /// Solves for the spans and their modes. @return the reason of a failure; empty on success
-  [[nodiscard]] std::string find(int terms) {
+  [[nodiscard]] std::string find_modes(int terms) {
     spans_.clear();
     largest_tangent_difference_ = 0;
     for (PlacedSolution& found : spans_at_rest_(terms, workspace_)) {
@@ -209,7 +209,7 @@ class RodVibrations {
     Eigen::Vector3d farthest = Eigen::Vector3d::Zero();
     for (int i = 0; i <= samples; ++i) {
       const Eigen::Vector3d here =
-          span->moved(result.begin + (result.end - result.begin) * i / samples, l, shape);
+          span->displacement(result.begin + (result.end - result.begin) * i / samples, l, shape);
       if (here.norm() > farthest.norm()) farthest = here;
     }
     Eigen::Index axis = 0;
@@ -221,7 +221,7 @@ class RodVibrations {
       for (std::size_t i = 0; i < arc_lengths.size(); ++i) {
         const bool on_span = arc_lengths[i] >= begin && arc_lengths[i] <= end;
         points.col(static_cast<Eigen::Index>(i)) =
-            on_span ? span->moved(arc_lengths[i], l, shape) : Eigen::Vector3d::Zero();
+            on_span ? span->displacement(arc_lengths[i], l, shape) : Eigen::Vector3d::Zero();
       }
       return points;
     };
@@ -299,7 +299,7 @@ Vibrations resolved_vibrations(const Problem& problem, const Inertia& inertia,
   const double neutral_square = zero_frequency_threshold * bending_unit(problem) /
                                 (total_mass(problem, inertia) * std::pow(problem.length, 3));
   while (true) {
-    const std::string problem_found = rod.find(terms);
+    const std::string problem_found = rod.find_modes(terms);
     if (!problem_found.empty()) {
       result.message = problem_found;
       return result;

@@ -25,11 +25,11 @@ struct SpinBasis {
 constexpr int most_steps = 200;  // maximum number of Newton steps; about 30 are usual
 constexpr int most_shifts = 60;  // maximum number of increases of the shift, by a factor of 4 each
 constexpr int most_halvings = 30;        // maximum number of halvings of a step
-constexpr double at_rest = 1e-4;         // spin of a frame at which the iteration ends [rad]
-constexpr double nearly_at_rest = 0.05;  // spin below which multipliers are updated [rad]
+constexpr double converged_spin = 1e-4;  // spin of a frame at which the iteration ends [rad]
+constexpr double multiplier_update_spin = 0.05;  // spin below which multipliers are updated [rad]
 // Smallest shift, in units of b / l^2; keeps steps along zero modes small.
 constexpr double least_shift = 1e-4;
-constexpr double longest_turn = 0.5;  // largest spin of a frame in a step [rad]
+constexpr double longest_spin_step = 0.5;  // largest spin of a frame in a step [rad]
 // Share of the predicted decrease that a step has to reach (Armijo).
 constexpr double armijo_share = 1e-4;
 constexpr double energy_rounding = 1e-13;  // relative rounding error of an energy
@@ -107,10 +107,10 @@ class DiscreteRod {
     for (std::size_t k = 0; k < turns.size(); ++k) q_.push_back(clamp_frame(span, k, turns[k]));
     number_unknowns();
     perturb_frames();
-    for (GripGap& of : gaps) fit_multiplier(of);
+    for (ChordConstraint& of : gaps) fit_multiplier(of);
   }
 
-  [[nodiscard]] Eigen::Vector3d gap(const GripGap& of) const {
+  [[nodiscard]] Eigen::Vector3d gap(const ChordConstraint& of) const {
     Eigen::Vector3d gap = -of.chord;
     for (Eigen::Index i = of.first; i < of.end; ++i) gap += mesh_.width(i) * tangent(i);
     return gap;
@@ -129,7 +129,7 @@ class DiscreteRod {
 
   [[nodiscard]] double augmented_energy() const {
     double energy = this->energy();
-    for (const GripGap& of : gaps) {
+    for (const ChordConstraint& of : gaps) {
       const Eigen::Vector3d open = gap(of);
       energy += of.multiplier.dot(open) + of.penalty / 2 * open.squaredNorm();
     }
@@ -138,7 +138,7 @@ class DiscreteRod {
 
   [[nodiscard]] const std::vector<Quaterniond>& frames() const { return q_; }
 
-  void turn(const std::vector<Quaterniond>& from, const Eigen::Matrix3Xd& spins) {
+  void rotate_frames(const std::vector<Quaterniond>& from, const Eigen::Matrix3Xd& spins) {
     for (std::size_t f = 0; f < q_.size(); ++f) {
       q_[f] =
           (from_rotation_vector(spins.col(static_cast<Eigen::Index>(f))) * from[f]).normalized();
@@ -226,7 +226,7 @@ class DiscreteRod {
     return polygon;
   }
 
-  std::vector<GripGap> gaps;
+  std::vector<ChordConstraint> gaps;
 
  private:
   [[nodiscard]] const Quaterniond& frame(Eigen::Index f) const {
@@ -273,21 +273,21 @@ class DiscreteRod {
 
   /// Rotates the frames a little, so that no symmetry keeps the rod at a saddle.
   void perturb_frames() {
-    constexpr double amplitude = 1e-3;  // [rad]
+    constexpr double perturbation_angle = 1e-3;  // [rad]
     Eigen::Matrix3Xd spins = Eigen::Matrix3Xd::Zero(3, std::ssize(q_));
     for (Eigen::Index i = 0; i < mesh_.intervals(); ++i) {
       const double x = static_cast<double>(i) / static_cast<double>(mesh_.intervals());
       const Eigen::Vector3d turn(std::sin(3 * x + 1), std::cos(2 * x), std::sin(2 * x + 1));
-      spins.col(i) = amplitude * basis(i).axes * turn;
+      spins.col(i) = perturbation_angle * basis(i).axes * turn;
     }
-    turn(std::vector<Quaterniond>(q_), spins);
+    rotate_frames(std::vector<Quaterniond>(q_), spins);
   }
 
   /// Returns the carried force including the contribution of the grips.
   /// @param with_penalties  whether gaps contribute in proportion to their penalties too
   [[nodiscard]] Eigen::Matrix3Xd force(bool with_penalties) const {
     Eigen::Matrix3Xd force = carried_force_;
-    for (const GripGap& of : gaps) {
+    for (const ChordConstraint& of : gaps) {
       Eigen::Vector3d multiplier = of.multiplier;
       if (with_penalties) multiplier += of.penalty * gap(of);
       force.middleCols(of.first, of.end - of.first).colwise() -= multiplier;
@@ -319,7 +319,7 @@ class DiscreteRod {
   }
 
   /// Sets the multiplier that balances the intervals between two grips best.
-  void fit_multiplier(GripGap& of) const {
+  void fit_multiplier(ChordConstraint& of) const {
     const Eigen::Matrix3Xd without = gradient(derivatives(), carried_force_);
     Eigen::Matrix3d matrix = Eigen::Matrix3d::Zero();
     Eigen::Vector3d right = Eigen::Vector3d::Zero();
@@ -354,10 +354,10 @@ std::optional<RodStep> damped_newton_step(DiscreteRod& rod, double unit, double&
   if (!step) return step;
   const double before = rod.augmented_energy();
   const std::vector<Quaterniond> from = rod.frames();
-  double share = std::min(1.0, longest_turn / std::max(step->largest, at_rest));
+  double share = std::min(1.0, longest_spin_step / std::max(step->largest, converged_spin));
   int halvings = 0;
   for (; halvings < most_halvings; ++halvings, share /= 2) {
-    rod.turn(from, share * step->spins);
+    rod.rotate_frames(from, share * step->spins);
     const double allowed_energy = before + armijo_share * share * step->slope;
     if (rod.augmented_energy() <= allowed_energy + energy_rounding * (1 + std::abs(before))) break;
   }
@@ -376,29 +376,29 @@ RelaxedPolygon relax_polygon(const RodSpan& span, const RodMesh& mesh,
   const double unit = least_bending_stiffness(span) / (span.length * span.length);
   std::vector<double> last_open(rod.gaps.size(), std::numeric_limits<double>::infinity());
   std::vector<double> largest;
-  for (const GripGap& of : rod.gaps) largest.push_back(largest_penalty * of.penalty);
+  for (const ChordConstraint& of : rod.gaps) largest.push_back(largest_penalty * of.penalty);
   double shift = least_shift * unit;
   for (int k = 0; k < most_steps && !deadline.passed(); ++k) {
     const std::optional<RodStep> step = damped_newton_step(rod, unit, shift);
     if (!step) break;
     // Steps with a shift are short, even far from the minimum.
-    if (step->largest > nearly_at_rest || shift > unit) continue;
+    if (step->largest > multiplier_update_spin || shift > unit) continue;
     bool closed = true;
     for (std::size_t i = 0; i < rod.gaps.size(); ++i) {
-      GripGap& of = rod.gaps[i];
+      ChordConstraint& of = rod.gaps[i];
       const Eigen::Vector3d open = rod.gap(of);
       closed = closed && of.closed(open);
       // The gap also contains the second-order error of the step, which is no reason to change the
       // multiplier.
       const double bent = step->largest * step->largest * span.length;
-      if (step->largest > at_rest && open.norm() < bent) continue;
+      if (step->largest > converged_spin && open.norm() < bent) continue;
       of.multiplier += of.penalty * open;
       if (open.norm() > required_gap_reduction * last_open[i]) {
         of.penalty = std::min(penalty_growth * of.penalty, largest[i]);
       }
       last_open[i] = open.norm();
     }
-    if (closed && step->largest < at_rest) break;
+    if (closed && step->largest < converged_spin) break;
   }
   return rod.result(motion);
 }

@@ -110,12 +110,12 @@ std::vector<RodState> states_of(const RodSpan& span, const RodMesh& mesh,
   return states;
 }
 
-bool GripGap::closed(const Eigen::Vector3d& gap) const {
+bool ChordConstraint::closed(const Eigen::Vector3d& gap) const {
   return gap.norm() < std::min(1e-4, slack / 100);
 }
 
-std::vector<GripGap> grip_gaps(const RodSpan& span, const RodMesh& mesh) {
-  std::vector<GripGap> gaps;
+std::vector<ChordConstraint> grip_gaps(const RodSpan& span, const RodMesh& mesh) {
+  std::vector<ChordConstraint> gaps;
   for (std::size_t k = 1; k < span.holds.size(); ++k) {
     const RodSpan::Hold& from = span.holds[k - 1];
     const RodSpan::Hold& to = span.holds[k];

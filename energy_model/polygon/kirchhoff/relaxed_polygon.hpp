@@ -33,9 +33,9 @@ struct RelaxedPolygon {
 /// starts near a minimum instead of near a saddle. It uses Newton's method on the spins of the
 /// frames; of a round rod, whose energy does not depend on the roll, on those across the tangents.
 /// The Hessian is banded and is shifted until it is positive definite. An augmented Lagrangian
-/// closes the gaps at the grips (GripGap::closed()) as the frames converge. It needs about 30
-/// steps, whose cost is proportional to the number of intervals. A zero mode, such as the rotation
-/// of an arch between clamps in line about that line, may still be moving at the end.
+/// closes the gaps at the grips (ChordConstraint::closed()) as the frames converge. It needs about
+/// 30 steps, whose cost is proportional to the number of intervals. A zero mode, such as the
+/// rotation of an arch between clamps in line about that line, may still be moving at the end.
 /// @param start  initial frames of the intervals
 /// @param motion  in the plane: the start lies in the plane, and so does the result
 /// @param deadline  when it has passed, the current shape is returned
@@ -68,7 +68,7 @@ struct PolygonMinima {
 /// neighbouring grips is the vector from one to the other. Its energy is
 ///     multiplier . gap + 1/2 penalty |gap|^2,
 /// so that the rod between the grips carries the force - multiplier - penalty gap.
-struct GripGap {
+struct ChordConstraint {
   Eigen::Index first, end;
   Eigen::Vector3d chord;
   double slack;  ///< length of the rod minus the distance of the grips
@@ -79,7 +79,7 @@ struct GripGap {
   [[nodiscard]] bool closed(const Eigen::Vector3d& gap) const;
 };
 
-[[nodiscard]] std::vector<GripGap> grip_gaps(const RodSpan& span, const RodMesh& mesh);
+[[nodiscard]] std::vector<ChordConstraint> grip_gaps(const RodSpan& span, const RodMesh& mesh);
 
 /// Returns initial guesses for relaxing a polygon, as frames of the intervals of a mesh. They are:
 /// straight along a line; with tangents along the carried force; and at an angle a(x) to the line,

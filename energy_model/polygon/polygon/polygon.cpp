@@ -29,8 +29,8 @@ constexpr double largest_step = 0.2;
 constexpr int most_escapes = 10;
 /// Initial step, in polygon lengths, below which slow steps with a modified Hessian are treated as
 /// an approach to a saddle.
-constexpr double first_saddle_step = 1e-3;
-constexpr int most_slow = 3;
+constexpr double first_escape_step = 1e-3;
+constexpr int most_slow_steps = 3;
 /// Largest residual force on a free point, divided by the forces that act [-]. The forces on a
 /// hundred points then balance within allowed_imbalance. The rounding error of positions times the
 /// largest stiffness is allowed as well (verify_result()). A polygon that is compressed between two
@@ -114,7 +114,7 @@ class PolygonDescent {
     double damping = 0;
     double last_step = std::numeric_limits<double>::infinity();
     double last_stiffening = 0;
-    double saddle_step = first_saddle_step;
+    double saddle_step = first_escape_step;
     int slow_steps = 0;  // consecutive steps with an incomplete Hessian that became shorter
     int escapes = 0;
   };
@@ -138,7 +138,8 @@ class PolygonDescent {
       iteration_.last_step = size;
       iteration_.slow_steps = 0;
     } else if (const bool at_rest = force.dot(step) <= rounding_energy();
-               at_rest || (size < iteration_.saddle_step && iteration_.slow_steps >= most_slow)) {
+               at_rest ||
+               (size < iteration_.saddle_step && iteration_.slow_steps >= most_slow_steps)) {
       // The polygon is in equilibrium, or approaches it slowly, but only omitted terms or damping
       // made the Hessian positive.
       iteration_.saddle_step = size / 4;
@@ -234,9 +235,9 @@ class PolygonDescent {
   void assemble(HessianTerms which) {
     hessian_terms_ = which;
     // A joint couples three points.
-    constexpr Eigen::Index coupled = 3;
+    constexpr Eigen::Index points_per_joint = 3;
     const Eigen::Index unknowns = axes_ * free_;
-    hessian_.setZero(std::min(coupled * axes_, unknowns), unknowns);
+    hessian_.setZero(std::min(points_per_joint * axes_, unknowns), unknowns);
     polygon_hessian(problem_, result_.points, which,
                     [&](Eigen::Index row, Eigen::Index column, const Eigen::Matrix3d& block) {
                       const Eigen::Index r = index_[static_cast<std::size_t>(row)];
@@ -352,11 +353,11 @@ PolygonResult solve_polygon(const PolygonProblem& problem, const Points& start,
   for (const HeldPoint& held : problem.held) result.points.col(held.point) = held.position;
 
   PolygonProblem stage = problem;
-  constexpr double growth = 10;
+  constexpr double stage_stiffening = 10;
   const double shortest = problem.rest_lengths.minCoeff();
   const double first = options.in_stages ? first_stretch_stiffness(problem, result.points)
                                          : problem.stretch_stiffness;
-  for (double c_c = first;; c_c *= growth) {
+  for (double c_c = first;; c_c *= stage_stiffening) {
     const bool last = c_c >= problem.stretch_stiffness;
     stage.stretch_stiffness = last ? problem.stretch_stiffness : c_c;
     for (std::size_t i = 0; i < problem.obstacles.size(); ++i) {

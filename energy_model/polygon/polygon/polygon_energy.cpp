@@ -18,11 +18,12 @@ struct Joint {
 /// series 1 + 2/3 h + 8/15 h^2 + .., in which each coefficient is 2n / (2n + 1) of the previous
 /// one, and 2 h (1 - h) f' = 1 - (1 - 2 h) f.
 Joint linear_joint(double k, double h) {
-  constexpr double small = 0.02;  // below it 1 - (1 - 2 h) f loses digits, and 10 terms are exact
+  constexpr double series_limit =
+      0.02;  // below it 1 - (1 - 2 h) f loses digits, and 10 terms are exact
   constexpr int terms = 10;
   const double half = std::atan2(std::sqrt(h), std::sqrt(1 - h));  // alpha / 2
   const double energy = 2 * k * half * half;
-  if (h > small) {
+  if (h > series_limit) {
     const double f = half / std::sqrt(h * (1 - h));
     return {energy, 2 * k * f, k * (1 - (1 - 2 * h) * f) / (h * (1 - h))};
   }

@@ -35,7 +35,7 @@ class TwistHomotopy {
   }
 
   /// Returns the largest twist angle of the start under the full twist [rad].
-  [[nodiscard]] double length() const { return longest_; }
+  [[nodiscard]] double largest_twist_angle() const { return longest_; }
 
   /// Returns the problem at an intermediate twist.
   /// @param to    share of the full twist, 0 .. 1
@@ -91,7 +91,8 @@ PolygonResult twist_polygon(const PolygonProblem& problem,
   double part = 0;
   double turning = first_twist_step;
   while (part < 1) {
-    const double next = std::min(1.0, part + turning / std::max(turning, homotopy.length()));
+    const double next =
+        std::min(1.0, part + turning / std::max(turning, homotopy.largest_twist_angle()));
     const PolygonProblem next_problem = homotopy.at(next, now.twists, part);
     step_options.time_limit = deadline.remaining();
     step_options.max_evaluations = options.max_evaluations - now.evaluations;

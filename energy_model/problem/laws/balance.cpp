@@ -135,8 +135,9 @@ class DistributedActions {
   /// Whether contact with a yielding body may stay undetected in a panel.
   /// @param points  points of the rod at the begin, the nodes and the end of the panel
   [[nodiscard]] bool may_hide_contact(const Eigen::Matrix3Xd& points, double width) const {
-    constexpr double half_gap = 0.1;         // between two nodes, in panel widths
-    constexpr double shortest = 1.0 / 2048;  // contact is longer than this share of the rod
+    constexpr double half_gap = 0.1;  // between two nodes, in panel widths
+    constexpr double shortest_contact_share =
+        1.0 / 2048;  // contact is longer than this share of the rod
     const Eigen::Index last = points.cols() - 1;
     return std::any_of(yielding_.begin(), yielding_.end(), [&](std::size_t i) {
       const obstacle::Body& body = problem_.obstacles[i].body;
@@ -149,7 +150,8 @@ class DistributedActions {
       };
       if (changes(0, 1) || changes(last - 1, last)) return true;
       const double least = clearance.minCoeff();
-      return width >= shortest * problem_.length && least >= 0 && least < half_gap * width;
+      return width >= shortest_contact_share * problem_.length && least >= 0 &&
+             least < half_gap * width;
     });
   }
 

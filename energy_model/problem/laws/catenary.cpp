@@ -31,28 +31,29 @@ double root_of_sinh_ratio(double excess) {
 
 }  // namespace
 
-double Catenary::own(double s) const {
+double Catenary::hanging_arc_length(double s) const {
   if (s < low) return s - low;
   return std::max(0.0, s - low - lying_length);
 }
 
-double Catenary::height(double s) const { return std::hypot(a, own(s)); }
+double Catenary::height(double s) const { return std::hypot(a, hanging_arc_length(s)); }
 
 Vector Catenary::point(double s) const {
-  const double q = own(s);
+  const double q = hanging_arc_length(s);
   const double x = std::clamp(s - low, 0.0, lying_length) + (a > 0 ? a * std::asinh(q / a) : 0.0);
-  return origin + x * level + (std::hypot(a, q) - a) * up;
+  return origin + x * horizontal + (std::hypot(a, q) - a) * up;
 }
 
 Vector Catenary::tangent(double s) const {
-  if (a == 0) return own(s) < 0 || (own(s) == 0 && low > 0) ? Vector(-up) : up;
-  return (a * level + own(s) * up) / height(s);
+  if (a == 0)
+    return hanging_arc_length(s) < 0 || (hanging_arc_length(s) == 0 && low > 0) ? Vector(-up) : up;
+  return (a * horizontal + hanging_arc_length(s) * up) / height(s);
 }
 
 Vector Catenary::curvature(double s) const {
   if (a == 0 || is_lying(s)) return Vector::Zero();
   const double y = height(s);
-  return a / (y * y) * (a * up - own(s) * level) / y;
+  return a / (y * y) * (a * up - hanging_arc_length(s) * horizontal) / y;
 }
 
 double Catenary::height_integral(double q) const {
@@ -60,7 +61,7 @@ double Catenary::height_integral(double q) const {
   return area - a * q;
 }
 
-double Catenary::bend_integral(double q) const {
+double Catenary::squared_curvature_integral(double q) const {
   if (a == 0) return 0;
   return (q / (a * a + q * q) + std::atan(q / a) / a) / 2;
 }
@@ -78,11 +79,11 @@ std::optional<Catenary> hanging_catenary(const Vector& begin, const Vector& end,
   const double u = root_of_sinh_ratio(excess);
   Catenary line;
   line.a = x / (2 * u);
-  line.level = flat / x;
+  line.horizontal = flat / x;
   line.up = up;
   const double first = line.a * std::sinh(std::atanh(rise / l) - u);
   line.low = -first;
-  line.origin = begin - line.a * std::asinh(first / line.a) * line.level -
+  line.origin = begin - line.a * std::asinh(first / line.a) * line.horizontal -
                 (std::hypot(line.a, first) - line.a) * up;
   return line;
 }
@@ -115,12 +116,12 @@ std::optional<Catenary> catenary_on_floor(const Vector& begin, const Vector& end
   }
   Catenary line;
   line.a = std::sqrt(low * high);
-  line.level = flat / x;
+  line.horizontal = flat / x;
   line.up = up;
   line.low = length(heights[0], line.a);
   line.lying_length = l - line.low - length(heights[1], line.a);
   if (!(line.lying_length > 0)) return std::nullopt;
-  line.origin = begin + reach(heights[0], line.a) * line.level - heights[0] * up;
+  line.origin = begin + reach(heights[0], line.a) * line.horizontal - heights[0] * up;
   return line;
 }
 

@@ -11,18 +11,19 @@ inline constexpr double negligible_length = 1e-9;
 
 /// Catenary: the shape of a line without bending stiffness under its weight w per length. The line
 /// may lie on a level floor along an interval that begins at its lowest point. Its arc length s is
-/// measured from one of its ends [m]. Where the line hangs, q is the arc length of own(), and
+/// measured from one of its ends [m]. Where the line hangs, q is the arc length of
+/// hanging_arc_length(), and
 ///     height = (a^2 + q^2)^(1/2),  x = a asinh(q / a).
 struct Catenary {
   double a = 0;    ///< T / w at the lowest point [m]; 0: a line that hangs straight
   double low = 0;  ///< s of the lowest point [m]; beyond an end if the line rises all along
-  double lying_length = 0;  ///< length of the part from `low` on that lies [m]
-  Eigen::Vector3d origin;   ///< lowest point [m]
-  Eigen::Vector3d level;    ///< horizontal unit vector along growing s
-  Eigen::Vector3d up;       ///< vertical unit vector
+  double lying_length = 0;     ///< length of the part from `low` on that lies [m]
+  Eigen::Vector3d origin;      ///< lowest point [m]
+  Eigen::Vector3d horizontal;  ///< horizontal unit vector along growing s
+  Eigen::Vector3d up;          ///< vertical unit vector
 
   /// Returns the arc length from the lowest point, or from the end of the part that lies [m].
-  [[nodiscard]] double own(double s) const;
+  [[nodiscard]] double hanging_arc_length(double s) const;
   /// Returns T / w [m], which is the height above the line's directrix.
   [[nodiscard]] double height(double s) const;
   [[nodiscard]] bool is_lying(double s) const { return s > low && s < low + lying_length; }
@@ -30,10 +31,12 @@ struct Catenary {
   [[nodiscard]] Eigen::Vector3d tangent(double s) const;
   /// Returns the derivative of the tangent by s [1/m]; zero on the part that lies.
   [[nodiscard]] Eigen::Vector3d curvature(double s) const;
-  /// Returns int (height - a) ds from the lowest point to the arc length q of own() [m^2].
+  /// Returns int (height - a) ds from the lowest point to the arc length q of hanging_arc_length()
+  /// [m^2].
   [[nodiscard]] double height_integral(double q) const;
-  /// Returns int |curvature|^2 ds from the lowest point to the arc length q of own() [1/m].
-  [[nodiscard]] double bend_integral(double q) const;
+  /// Returns int |curvature|^2 ds from the lowest point to the arc length q of hanging_arc_length()
+  /// [1/m].
+  [[nodiscard]] double squared_curvature_integral(double q) const;
 };
 
 /// Computes the catenary of length l between two points; std::nullopt if they are above each other

@@ -30,7 +30,7 @@ constexpr double largest_clamp_angle = 170 * std::numbers::pi / 180;
 constexpr double layer_decay_lengths = 40;
 /// Largest error_estimate divided by the length with which a soft line is returned. The models' own
 /// estimates are lower where they succeed.
-constexpr double most_error = 1e-7;
+constexpr double largest_accepted_error = 1e-7;
 
 /// Bending layer of the rod at a grip at one of its ends.
 struct Layer {
@@ -127,10 +127,11 @@ class CatenaryLimit {
                          .at_end = grip.at > problem_.length / 2,
                          .clamped = grip.direction.has_value()});
     }
-    constexpr int rounds = 12;  // each reduces the gap by about the ratio of layer and rod length
-    for (int i = 0; i < rounds; ++i) {
+    constexpr int most_rounds =
+        12;  // each reduces the gap by about the ratio of layer and rod length
+    for (int i = 0; i < most_rounds; ++i) {
       if (!find_catenary()) return std::nullopt;
-      for (Layer& layer : layers_) bend(layer);
+      for (Layer& layer : layers_) set_layer(layer);
     }
     if (!find_catenary() || !are_layers_separate()) return std::nullopt;
     return result();
@@ -182,7 +183,7 @@ class CatenaryLimit {
                .low = layer.at_end ? 0.0 : l,
                .lying_length = 0,
                .origin = begin_of(layer) - l * up_,
-               .level = up_.unitOrthogonal(),
+               .horizontal = up_.unitOrthogonal(),
                .up = up_};
       return true;
     }
@@ -204,7 +205,7 @@ class CatenaryLimit {
 
   [[nodiscard]] double at(const Layer& layer) const { return layer.at_end ? problem_.length : 0; }
 
-  void bend(Layer& layer) const {
+  void set_layer(Layer& layer) const {
     const double sign = layer.at_end ? -1 : 1;
     layer.along = sign * line_.tangent(at(layer));
     layer.length = std::sqrt(problem_.bending_stiffness / (weight_ * line_.height(at(layer))));
@@ -232,7 +233,7 @@ class CatenaryLimit {
       const double above = ground ? grip_of(layer).position.dot(up_) - *ground : 1.0;
       if (!ground) continue;
       const bool is_lying = line_.is_lying(layer.at_end ? problem_.length * (1 - 1e-15) : 1e-300) ||
-                            line_.own(at(layer)) == 0;
+                            line_.hanging_arc_length(at(layer)) == 0;
       if (is_lying) {
         // The end has to be on the floor and along it.
         if (std::abs(above) > negligible_length * problem_.length || layer.turn > negligible_length)
@@ -274,10 +275,11 @@ class CatenaryLimit {
         "converged: a catenary with bending layers at its ends, the limit of small EI / (w l^3); "
         "neglected terms move points by about " +
         text_of(result.error_estimate) + " of l";
-    const double first = line_.own(0);
-    const double last = line_.own(l);
+    const double first = line_.hanging_arc_length(0);
+    const double last = line_.hanging_arc_length(l);
     const double offset = (line_.origin - problem_.grips.front().position).dot(up_);
-    result.energy.bending = EI / 2 * (line_.bend_integral(last) - line_.bend_integral(first));
+    result.energy.bending =
+        EI / 2 * (line_.squared_curvature_integral(last) - line_.squared_curvature_integral(first));
     result.energy.gravity =
         weight_ * (offset * l + line_.height_integral(last) - line_.height_integral(first));
     result.grips.resize(problem_.grips.size());
@@ -360,7 +362,7 @@ std::optional<Equilibrium> shape_without_search(const Problem& problem) {
   std::optional<Equilibrium> line = taut_line(problem);
   if (!line && is_catenary_limit(problem)) {
     line = catenary_limit(problem);
-    if (line && !(line->error_estimate <= most_error)) line.reset();
+    if (line && !(line->error_estimate <= largest_accepted_error)) line.reset();
   }
   if (line) judge_balance(problem, *line, std::max(allowed_imbalance, line->error_estimate));
   return line;

@@ -173,7 +173,7 @@ void check(const Problem& problem) {
   }
 }
 
-Eigen::Vector3d LineLoad::between(double from, double to) const {
+Eigen::Vector3d LineLoad::force_between(double from, double to) const {
   const double a = std::clamp(from, begin, end);
   const double b = std::clamp(to, begin, end);
   return (b - a) * (at_begin + ((a + b) / 2 - begin) * slope());

@@ -58,8 +58,9 @@ void add_loads(const Problem& problem,
 
 /// Whether a load moves the rod out of a plane by more than about 1e-6 of its length.
 bool loads_leave_plane(const Problem& problem, const Eigen::Vector3d& normal) {
-  constexpr double negligible = 1e-6;
-  const double most = negligible * bending_unit(problem) / (problem.length * problem.length);
+  constexpr double negligible_load_share = 1e-6;
+  const double most =
+      negligible_load_share * bending_unit(problem) / (problem.length * problem.length);
   const auto leaves = [&](const Eigen::Vector3d& force) {
     return std::abs(force.dot(normal)) > most;
   };
@@ -187,8 +188,8 @@ std::optional<Eigen::Vector3d> natural_normal(const Problem& problem) {
   // Without another direction, a line in x-y determines the plane x-y.
   const Eigen::Vector3d first = directions.empty() ? Eigen::Vector3d::UnitX() : directions.front();
   const auto is_along_first = [&](const Eigen::Vector3d& v) {
-    constexpr double parallel = 1e-9;
-    return v.cross(first).norm() <= parallel;
+    constexpr double parallel_tolerance = 1e-9;
+    return v.cross(first).norm() <= parallel_tolerance;
   };
   const std::optional<Plane> plane = find_plane(Eigen::Vector3d::Zero(), first, directions);
   if (!plane) return std::nullopt;

@@ -119,16 +119,17 @@ std::vector<Segment> segments_of(const Span& span) {
   }
   const std::vector<Segment> along_chords = segments;
   constexpr int most_rounds = 25;
-  constexpr double settled = 1e-2;
+  constexpr double tension_tolerance = 1e-2;
   double change = 1;
-  for (int round = 0; round < most_rounds && change > settled * settled; ++round) {
+  for (int round = 0; round < most_rounds && change > tension_tolerance * tension_tolerance;
+       ++round) {
     change = 0;
     set_tangents(span, segments);
     for (Segment& segment : segments) {
       if (segment.taut()) change = std::max(change, update_pull_and_tension(span, segment));
     }
   }
-  return change < settled ? segments : along_chords;
+  return change < tension_tolerance ? segments : along_chords;
 }
 
 }  // namespace dlo::energy_model

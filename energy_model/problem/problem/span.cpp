@@ -17,13 +17,13 @@ Eigen::Vector3d Span::weight_between(double from, double to) const {
     sum += (std::clamp(to, part.begin, part.end) - std::clamp(from, part.begin, part.end)) *
            part.weight;
   }
-  for (const LineLoad& load : line_loads) sum += load.between(from, to);
+  for (const LineLoad& load : line_loads) sum += load.force_between(from, to);
   return sum;
 }
 
 Eigen::Vector3d Span::mean_weight() const {
   Eigen::Vector3d mean = weight;
-  for (const LineLoad& load : line_loads) mean += load.between(0, length) / length;
+  for (const LineLoad& load : line_loads) mean += load.force_between(0, length) / length;
   return mean;
 }
 

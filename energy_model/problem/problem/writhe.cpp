@@ -23,9 +23,10 @@ double crossing_angle(const Eigen::Vector3d& a, const Eigen::Vector3d& b, const 
   const Eigen::Vector3d ad = d - a;
   const Eigen::Vector3d bc = c - b;
   const Eigen::Vector3d bd = d - b;
-  constexpr double coplanar = 1e-9;  // relative size of the triple product
+  constexpr double coplanar_tolerance = 1e-9;  // relative size of the triple product
   const double side = (d - c).cross(b - a).dot(ac);
-  if (!(std::abs(side) > coplanar * (d - c).norm() * (b - a).norm() * ac.norm())) return 0;
+  if (!(std::abs(side) > coplanar_tolerance * (d - c).norm() * (b - a).norm() * ac.norm()))
+    return 0;
   std::array<Eigen::Vector3d, 4> normals = {ac.cross(ad), ad.cross(bd), bd.cross(bc), bc.cross(ac)};
   for (Eigen::Vector3d& normal : normals) normal.normalize();
   double angle = 0;

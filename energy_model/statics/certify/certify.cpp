@@ -119,7 +119,7 @@ Eigen::VectorXd change_with_fewer_terms(const SpanSolution& solution, const Span
 double measured_error(const SpanSolution& solution, const SpanPoint& point,
                       const Eigen::VectorXd& next_step, double load) {
   // Covers the rounding of another step, and coefficients that decrease by a tenth per two more.
-  constexpr double safety = 10;
+  constexpr double safety_factor = 10;
   const double scale = scale_of_forces(solution, load);
   const double smallest = std::min(solution.eigenvalue_nearest_zero, 1.0);
   const double soft =
@@ -129,7 +129,7 @@ double measured_error(const SpanSolution& solution, const SpanPoint& point,
     const Eigen::Matrix3Xd moved_points = points_at(*solution.model, solution.x + change);
     return (moved_points - here).colwise().norm().maxCoeff();
   };
-  return safety *
+  return safety_factor *
              (points_moved(next_step) + points_moved(change_with_fewer_terms(solution, point))) +
          soft;
 }

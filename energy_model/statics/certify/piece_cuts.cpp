@@ -323,8 +323,8 @@ MiddlePassage classify_middle_passage(const SpanSolution& solution) {
   const SpanShape shape = solution.model->shape(solution.x);
   const std::vector<double> s = evenly_spaced(span.length);
   const Eigen::Matrix3Xd points = points_at(shape, s);
-  constexpr double lengths_to_see = 4;
-  const double visible_distance = lengths_to_see * span.length / first_intervals;
+  constexpr double sampled_decay_lengths = 4;
+  const double visible_distance = sampled_decay_lengths * span.length / first_intervals;
   MiddlePassage passed = MiddlePassage::none;
   for (const Span::SoftObstacle& obstacle : span.soft_obstacles) {
     const obstacle::Body& body = obstacle.body;

@@ -20,7 +20,7 @@ constexpr Eigen::Index grid_points = 1001;
 constexpr std::size_t coarse_stride = 20;
 /// Number of Newton steps that refine a minimum of the clearance, starting from a grid point. The
 /// steps stay between the neighbouring grid points.
-constexpr int refinements = 6;
+constexpr int newton_steps = 6;
 
 /// Number of additional points on each side of a contact's ends, each at half the distance of the
 /// one before. If a point contact should become a part in contact, the rod is within the obstacle
@@ -34,7 +34,7 @@ constexpr double not_evaluated = std::numeric_limits<double>::infinity();
 GapMinimum smallest_clearance(const Span::Obstacle& obstacle, const SpanShape& shape, double low,
                               double at, double high) {
   GapMinimum lowest{obstacle, at, std::numeric_limits<double>::infinity()};
-  for (int k = 0; k < refinements; ++k) {
+  for (int k = 0; k < newton_steps; ++k) {
     const Clearance here = clearance_at(obstacle.body, shape.sample(std::array{at}), 0);
     if (here.value < lowest.clearance) lowest = {obstacle, at, here.value};
     if (!(here.rate > 0)) break;
@@ -87,7 +87,7 @@ bool is_rigid(const Obstacle& obstacle) { return std::isinf(obstacle.stiffness);
 /// grid points; where the shape may be deeper there, it is sampled again 16 times as densely.
 double depth_within(const obstacle::Body& body, const Equilibrium& shape, std::vector<double> s,
                     double h, const Samples& grid, double enough) {
-  constexpr int closer = 16;
+  constexpr int subdivisions = 16;
   constexpr int most_levels = 4;
   Eigen::VectorXd clearance = body.clearances(grid.points);
   double deepest = -clearance.minCoeff();
@@ -99,8 +99,8 @@ double depth_within(const obstacle::Body& body, const Equilibrium& shape, std::v
     for (std::size_t i = 0; i < s.size(); ++i) {
       const double here = clearance[static_cast<Eigen::Index>(i)];
       if (here - sag > -std::max(deepest, enough)) continue;
-      for (int k = 1 - closer; k < closer; ++k) {
-        const double at = s[i] + h * k / closer;
+      for (int k = 1 - subdivisions; k < subdivisions; ++k) {
+        const double at = s[i] + h * k / subdivisions;
         if (k != 0 && at >= 0 && at <= length) between.push_back(at);
       }
     }
@@ -109,7 +109,7 @@ double depth_within(const obstacle::Body& body, const Equilibrium& shape, std::v
     s = std::move(between);
     clearance = body.clearances(shape.sample(s).points);
     deepest = std::max(deepest, -clearance.minCoeff());
-    h /= closer;
+    h /= subdivisions;
   }
   return deepest;
 }

@@ -14,7 +14,7 @@ namespace {
 constexpr double fewest_segments = 64;
 constexpr double most_segments = 256;
 /// Ratio of Segments::few to Segments::all.
-constexpr double few = 1.0 / 3;
+constexpr double segment_share = 1.0 / 3;
 /// Stretch and penetration under the loads and bending forces, divided by the rod length.
 constexpr double penalty_compliance = 1e-4;
 constexpr double penalty_force_scale = 40;
@@ -46,7 +46,7 @@ struct Mesh {
 Mesh mesh_of(const Span& span, Segments segments) {
   const double load = std::max(1.0, span.total_load());
   const double count = std::clamp(24 * std::pow(load, 0.25), fewest_segments, most_segments);
-  const double h = span.length / (segments == Segments::few ? few * count : count);
+  const double h = span.length / (segments == Segments::few ? segment_share * count : count);
   Mesh mesh;
   mesh.before = span.start_direction.has_value();
   mesh.after = span.end_direction.has_value();
@@ -66,7 +66,7 @@ Mesh mesh_of(const Span& span, Segments segments) {
 /// Returns a block extended into a half-space that its face touches or lies within: a polygon
 /// pushed out of that face would be caught between the block and the half-space.
 obstacle::Body extended_to_half_space(const obstacle::Body& body, const Span& span) {
-  constexpr double flush = 1e-6;  // largest height of a flush face [l]
+  constexpr double flush_height = 1e-6;  // largest height of a flush face [l]
   Eigen::Vector3d lower = body.lower().array() - body.radius();
   Eigen::Vector3d upper = body.upper().array() + body.radius();
   if (!(upper - lower).allFinite() || !(body.lower().array() < body.upper().array()).all()) {
@@ -85,7 +85,7 @@ obstacle::Body extended_to_half_space(const obstacle::Body& body, const Span& sp
           for (int k = 0; k < 3; ++k) at[k] = (corner >> k) % 2 == 1 ? upper[k] : lower[k];
           highest = std::max(highest, ground.body.clearance(body.centre() + body.axes() * at));
         }
-        if (highest > flush * span.length) continue;
+        if (highest > flush_height * span.length) continue;
         (up ? upper[axis] : lower[axis]) += up ? span.length : -span.length;
       }
     }
@@ -105,10 +105,10 @@ class PenaltyRelaxation {
       problem_.rest_lengths[static_cast<Eigen::Index>(i)] = mesh_.s[i + 1] - mesh_.s[i];
     }
     problem_.stretch_stiffness = stiff;
-    problem_.stiffness = round(span.stiffness);
+    problem_.stiffness = round_stiffness(span.stiffness);
     place_joints();
     place_forces();
-    hold();
+    set_held_points();
     for (const Span::SoftObstacle& obstacle : span.soft_obstacles) {
       add_obstacle(obstacle, obstacle.stiffness * segment());
     }
@@ -132,14 +132,14 @@ class PenaltyRelaxation {
         });
   }
 
-  [[nodiscard]] PenaltyPolygon from(const TangentField& start, const Deadline& deadline) {
+  [[nodiscard]] PenaltyPolygon relax_from(const TangentField& start, const Deadline& deadline) {
     if (!problem_.twists.empty()) problem_.twists[0].angle = start(Eigen::VectorXd::Zero(1)).twist;
-    return from(points_of(start), Stages::yes, deadline);
+    return relax_from(points_of(start), Stages::yes, deadline);
   }
 
-  [[nodiscard]] PenaltyPolygon from(const PenaltyPolygon& coarse, const Deadline& deadline) {
+  [[nodiscard]] PenaltyPolygon relax_from(const PenaltyPolygon& coarse, const Deadline& deadline) {
     if (!problem_.twists.empty()) problem_.twists[0].angle = coarse.twist;
-    return from(points_between(coarse), Stages::no, deadline);
+    return relax_from(points_between(coarse), Stages::no, deadline);
   }
 
  private:
@@ -148,16 +148,16 @@ class PenaltyRelaxation {
 
   /// Separates neighbouring points that coincide: a start may turn back within a segment.
   void separate(Eigen::Matrix3Xd& points) const {
-    constexpr double least = 1e-9;  // divided by the length at rest
+    constexpr double least_gap_share = 1e-9;  // divided by the length at rest
     for (Eigen::Index i = 1; i < points.cols(); ++i) {
-      const double gap = least * problem_.rest_lengths[i - 1];
+      const double gap = least_gap_share * problem_.rest_lengths[i - 1];
       if ((points.col(i) - points.col(i - 1)).norm() >= gap) continue;
       points.rightCols(points.cols() - i).row(0).array() += gap;
     }
   }
 
-  [[nodiscard]] PenaltyPolygon from(Eigen::Matrix3Xd start, Stages stages,
-                                    const Deadline& deadline) {
+  [[nodiscard]] PenaltyPolygon relax_from(Eigen::Matrix3Xd start, Stages stages,
+                                          const Deadline& deadline) {
     separate(start);
     PolygonOptions options;
     options.tolerance = tolerance;
@@ -198,7 +198,7 @@ class PenaltyRelaxation {
   [[nodiscard]] double s(Eigen::Index i) const { return mesh_.s[static_cast<std::size_t>(i)]; }
 
   /// Returns EI of a round rod with about the same bending; in the plane EI about its normal.
-  [[nodiscard]] double round(const Eigen::Vector3d& stiffness) const {
+  [[nodiscard]] double round_stiffness(const Eigen::Vector3d& stiffness) const {
     return span_.planar ? stiffness.x() : std::sqrt(stiffness.x() * stiffness.y());
   }
 
@@ -223,7 +223,7 @@ class PenaltyRelaxation {
       const double end = (s(i + 1) + s(i + 2)) / 2;
       for (const Span::Part& part : span_.parts) {
         const bool within = s(i + 1) >= part.begin && s(i + 1) <= part.end;
-        if (within) problem_.stiffnesses[i] = round(part.stiffness);
+        if (within) problem_.stiffnesses[i] = round_stiffness(part.stiffness);
       }
       if (problem_.natural_turns.size() > 0) {
         problem_.natural_turns[i] =
@@ -246,7 +246,7 @@ class PenaltyRelaxation {
     }
   }
 
-  void hold() {
+  void set_held_points() {
     const auto last = static_cast<Eigen::Index>(mesh_.s.size()) - 1;
     const auto hold_point = [&](Eigen::Index point, const Eigen::Vector3d& position) {
       const bool held =
@@ -375,7 +375,7 @@ TangentField PenaltyPolygon::field() const {
 PenaltyPolygon relax_on_obstacles(const Span& span, const TangentField& start, Segments segments,
                                   const Deadline& deadline, Descent descent) {
   PenaltyRelaxation resting(span, segments, descent);
-  if (!resting.passes_through_core(start)) return resting.from(start, deadline);
+  if (!resting.passes_through_core(start)) return resting.relax_from(start, deadline);
   TangentField from = start;
   int evaluations = 0;
   for (const double round : {1.0, 0.75, 0.5, 0.25}) {
@@ -384,18 +384,18 @@ PenaltyPolygon relax_on_obstacles(const Span& span, const TangentField& start, S
       obstacle.body = obstacle.body.with_rounded_edges(round);
     }
     const PenaltyPolygon before =
-        PenaltyRelaxation(rounder, segments, descent).from(from, deadline);
+        PenaltyRelaxation(rounder, segments, descent).relax_from(from, deadline);
     evaluations += before.evaluations;
     from = before.field();
   }
-  PenaltyPolygon result = resting.from(from, deadline);
+  PenaltyPolygon result = resting.relax_from(from, deadline);
   result.evaluations += evaluations;
   return result;
 }
 
 PenaltyPolygon relax_refined(const Span& span, const PenaltyPolygon& coarse,
                              const Deadline& deadline, Descent descent) {
-  return PenaltyRelaxation(span, Segments::all, descent).from(coarse, deadline);
+  return PenaltyRelaxation(span, Segments::all, descent).relax_from(coarse, deadline);
 }
 
 }  // namespace dlo::energy_model

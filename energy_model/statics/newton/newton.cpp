@@ -150,11 +150,11 @@ NewtonIteration::Outcome NewtonIteration::advance() {
   }
   if (!std::exchange(step_is_next_, false)) step_.solve();
   const bool ends_on_own = options_.method != NewtonMethod::simplified;
-  if (step_.is_borrowed() && ends_on_own && step_.size() <= borrowed_factor_step) {
+  if (step_.is_borrowed() && ends_on_own && step_.step_norm() <= borrowed_factor_step) {
     step_.factor();
     step_.solve();
   }
-  const double moved = step_.size();
+  const double moved = step_.step_norm();
   solution_.next_step = moved;
   if (!ends_on_own && !step_.is_borrowed() && !(moved <= longest_simplified_step)) {
     return Outcome::diverged;
@@ -170,7 +170,7 @@ NewtonIteration::Outcome NewtonIteration::handle_rejected_step(double moved) {
   // Only rounding is left; its component along a near-null mode has no meaning.
   if (small && moved > largest_stagnation_step && !step_.is_minimum() && is_own) {
     step_.solve_by_least_squares();
-    solution_.next_step = step_.size();
+    solution_.next_step = step_.step_norm();
   }
   if (small && solution_.next_step <= largest_stagnation_step && !step_.is_borrowed()) {
     return Outcome::equilibrium;
@@ -184,7 +184,7 @@ NewtonIteration::Outcome NewtonIteration::handle_rejected_step(double moved) {
 
 NewtonIteration::Outcome NewtonIteration::handle_accepted_step(double moved) {
   step_is_next_ = true;
-  solution_.next_step = step_.size();
+  solution_.next_step = step_.step_norm();
   const bool borrowed = step_.is_borrowed();
   const bool continues = borrowed && options_.method != NewtonMethod::simplified;
   const double small = std::max(rounding_residual, options_.step_tolerance) * scale();
@@ -233,15 +233,15 @@ void NewtonIteration::move(double length) {
 /// factor.
 /// @return whether such a length was found; if not, the solution is unchanged
 bool NewtonIteration::natural_monotonicity_step() {
-  constexpr double longest = 2;        // largest step [rad]; longer ones leave the path
-  constexpr double least_part = 1e-5;  // smallest part of a step
+  constexpr double longest_newton_step = 2;  // largest step [rad]; longer ones leave the path
+  constexpr double least_part = 1e-5;        // smallest part of a step
   std::swap(buffers_.here, trial_);
   buffers_.trial_x = solution_.x;
   buffers_.trial_multipliers = solution_.multipliers;
   buffers_.first_step = buffers_.step;
   const double length = step_.norm_with_multipliers();
-  const double moves = step_.size();
-  const double first = std::min(1.0, longest / moves);
+  const double moves = step_.step_norm();
+  const double first = std::min(1.0, longest_newton_step / moves);
   // So short a step is not shortened: if the next one is no shorter, both consist of rounding
   // errors.
   const bool short_enough = moves <= largest_stagnation_step && is_at_rounding();

@@ -40,7 +40,9 @@ class NewtonStep {
   void update();
 
   /// Returns the norm of the part of the step that moves the unknowns.
-  [[nodiscard]] double size() const { return buffers_.step.head(buffers_.gradient.size()).norm(); }
+  [[nodiscard]] double step_norm() const {
+    return buffers_.step.head(buffers_.gradient.size()).norm();
+  }
   /// Returns the norm of the step with multipliers, these divided by the scale of forces.
   [[nodiscard]] double norm_with_multipliers() const;
 

@@ -321,7 +321,7 @@ bool restore_constraints(SpanSolution& solution, SpanPoint& point, double gap,
                          RestoreScratch& scratch, double most_energy) {
   if (solution.model->constraints() == 0) return std::isfinite(point.energy);
   constexpr int most_steps = 60;
-  constexpr double longest = 1;  // largest length of a step
+  constexpr double longest_step = 1;  // largest length of a step
   SpanPoint& trial = scratch.trial;
   Eigen::MatrixXd& square = scratch.square;
   Eigen::MatrixXd& normal = scratch.normal;
@@ -341,7 +341,7 @@ bool restore_constraints(SpanSolution& solution, SpanPoint& point, double gap,
       scratch.along = point.residual;
       scratch.factor.solveInPlace(scratch.along);
       scratch.step.noalias() = point.jacobian.transpose() * scratch.along;
-      if (!(scratch.step.norm() <= longest)) continue;
+      if (!(scratch.step.norm() <= longest_step)) continue;
       solution.evaluate(point.x - scratch.step, trial);
       shorter = trial.residual.norm() < 0.99 * size;
     }

@@ -31,12 +31,12 @@ constexpr double shortest_contact_part = 1e-3;
 /// Whether the contacts end where an obstacle without friction requires, which makes the shape an
 /// equilibrium: a remaining slope or moment there would need more than pressure.
 bool meets_free_boundaries(const SpanSolution& solution) {
-  constexpr double settled = 1e-6;
+  constexpr double contact_residual_tolerance = 1e-6;
   const Span& span = solution.model->span();
   const std::vector<FreeBoundary> ends = free_boundaries(span);
   if (ends.empty()) return true;
   const Eigen::VectorXd residual = free_boundary_residual(solution, ends);
-  if (!(residual.cwiseAbs().maxCoeff() <= settled)) return false;
+  if (!(residual.cwiseAbs().maxCoeff() <= contact_residual_tolerance)) return false;
   // The positions of two points determine how they share a force, and need a stricter tolerance.
   constexpr double share = 1e-7;
   for (std::size_t i = 0; i < ends.size(); ++i) {

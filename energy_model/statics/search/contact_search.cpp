@@ -249,12 +249,13 @@ class ContactSearch {
 
   /// Descends from the best shape along its direction of negative curvature, also out of its plane.
   void leave_saddle() {
-    constexpr double push = 0.5;
+    constexpr double mode_amplitude = 0.5;
     const SpanSolution& saddle = found_.best();
     const std::optional<NegativeCurvature> descent = negative_curvature(saddle);
     if (!descent || options_.deadline.passed()) return;
     SpanEnergy pushed(descent->span, saddle.terms);
-    const Eigen::VectorXd x = pushed.prolong(*saddle.model, saddle.x) + push * descent->direction;
+    const Eigen::VectorXd x =
+        pushed.prolong(*saddle.model, saddle.x) + mode_amplitude * descent->direction;
     Span span = span_;
     span.planar = descent->span.planar;
     SpanOptions options = options_;

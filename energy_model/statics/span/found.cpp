@@ -23,7 +23,7 @@ bool is_better(const SpanSolution& a, const SpanSolution& b) {
 
 }  // namespace
 
-SearchStrategy& SearchLog::of(const std::string& strategy) {
+SearchStrategy& SearchLog::entry_of(const std::string& strategy) {
   const auto known =
       std::find_if(strategies_.begin(), strategies_.end(),
                    [&](const SearchStrategy& other) { return other.name == strategy; });

@@ -17,10 +17,12 @@ namespace dlo::energy_model {
 /// what was omitted, each reason once.
 class SearchLog {
  public:
-  void tried(const std::string& strategy, int starts = 1) { of(strategy).tried += starts; }
+  void count_tried(const std::string& strategy, int starts = 1) {
+    entry_of(strategy).tried += starts;
+  }
   /// Counts equilibria that this strategy found first.
-  void found(const std::string& strategy, int equilibria = 1) {
-    of(strategy).new_equilibria += equilibria;
+  void count_found(const std::string& strategy, int equilibria = 1) {
+    entry_of(strategy).new_equilibria += equilibria;
   }
   void add_omitted(const std::string& what);
 
@@ -32,7 +34,7 @@ class SearchLog {
   [[nodiscard]] const std::vector<std::string>& omitted() const { return omitted_; }
 
  private:
-  SearchStrategy& of(const std::string& strategy);
+  SearchStrategy& entry_of(const std::string& strategy);
 
   std::vector<SearchStrategy> strategies_;
   std::vector<std::string> omitted_;
@@ -40,10 +42,10 @@ class SearchLog {
 
 /// Adds to the log if there is one.
 inline void log_tried(SearchLog* log, const std::string& strategy) {
-  if (log != nullptr) log->tried(strategy);
+  if (log != nullptr) log->count_tried(strategy);
 }
 inline void log_found(SearchLog* log, const std::string& strategy) {
-  if (log != nullptr) log->found(strategy);
+  if (log != nullptr) log->count_found(strategy);
 }
 inline void log_omitted(SearchLog* log, const std::string& what) {
   if (log != nullptr) log->add_omitted(what);

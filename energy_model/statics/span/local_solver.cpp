@@ -172,7 +172,7 @@ SpanSolution LocalSolver::newton_from(const TangentField& field) {
 /// these are nearly the same if its grips have hardly moved, unless its start frame has rotated
 /// about the tangent. @return whether the result has nearly the wanted tangents
 bool LocalSolver::prolong_known(const StartShape& wanted, SpanSolution& solution) const {
-  constexpr double near = 0.2;  // largest difference of tangents
+  constexpr double near_tangent_tolerance = 0.2;  // largest difference of tangents
   const KnownShape& known = options_.start.known;
   SpanEnergy& model = *solution.model;
   if (!known.model || span_.planar || span_.has_material_directors()) return false;
@@ -181,7 +181,8 @@ bool LocalSolver::prolong_known(const StartShape& wanted, SpanSolution& solution
   solution.x = model.prolong(*known.model, known.x);
   solution.point = workspace_.newton().new_point(model);
   solution.evaluate(solution.x, *solution.point);
-  return (solution.point->tangents() - wanted.tangents).cwiseAbs().maxCoeff() < near;
+  return (solution.point->tangents() - wanted.tangents).cwiseAbs().maxCoeff() <
+         near_tangent_tolerance;
 }
 
 void LocalSolver::descend(SpanSolution& solution) {

@@ -147,7 +147,7 @@ std::optional<Eigen::VectorXd> mode_nearest_zero(const SpanSolution& solution) {
 
 std::optional<SpanSolution> leave_saddle(const SpanSolution& solution, const SpanOptions& options,
                                          SpanWorkspace& workspace) {
-  constexpr double push = 0.5;
+  constexpr double mode_amplitude = 0.5;
   const auto descended = [&](const Span& span, const Eigen::VectorXd& disturbance) {
     LocalSolver local_solver(span, options, workspace);
     const std::shared_ptr<SpanEnergy> model = workspace.model(span, solution.terms);
@@ -159,11 +159,11 @@ std::optional<SpanSolution> leave_saddle(const SpanSolution& solution, const Spa
     return refine(local_solver, std::move(lower));
   };
   const std::optional<NegativeCurvature> descent = negative_curvature(solution);
-  if (descent) return descended(descent->span, push * descent->direction);
+  if (descent) return descended(descent->span, mode_amplitude * descent->direction);
   // A rod through an obstacle's middle is unstable in a mode in which its series does not show it.
   const std::optional<Eigen::VectorXd> mode = mode_nearest_zero(solution);
   if (!mode || solution.model->span().soft_obstacles.empty()) return std::nullopt;
-  return descended(solution.model->span(), push * *mode);
+  return descended(solution.model->span(), mode_amplitude * *mode);
 }
 
 void search_between(const SpanOptions& options, SpanWorkspace& workspace, Found& found) {

@@ -132,7 +132,7 @@ class Search {
     const bool may_leave = span_.planar && !span_.stays_in_plane();
     if (may_leave && span_.has_material_directors()) search_in_space();
     if (options_.wants_all()) log_omitted();
-    if (found_.empty()) (void)found_.add(none());
+    if (found_.empty()) (void)found_.add(failed_solution());
     return std::move(found_).take();
   }
 
@@ -153,7 +153,7 @@ class Search {
   /// the lowest. Other starts are used only if the first ones lead to no stable lowest shape.
   void descend_from_lowest_starts() {
     const std::vector<Start> starts = ranked_starts();
-    const std::size_t first = std::min(followed(), starts.size());
+    const std::size_t first = std::min(followed_start_count(), starts.size());
     std::vector<SpanSolution> coarse;
     for (std::size_t i = 0; i < starts.size() && !on_.out_of_time(); ++i) {
       if (i >= first && found_.has_stable_lowest()) return;
@@ -203,7 +203,7 @@ class Search {
   }
 
   /// Number of starts that are followed in any case.
-  [[nodiscard]] std::size_t followed() const {
+  [[nodiscard]] std::size_t followed_start_count() const {
     if (span_.has_material_directors()) return followed_natural_starts;
     return span_.soft_obstacles.empty() ? followed_starts : followed_starts_beside_obstacles;
   }
@@ -266,8 +266,9 @@ class Search {
     RestoreScratch scratch;
     for (Start& start : starts) {
       if (on_.out_of_time()) return;
-      const double most =
-          energies.size() < followed() ? std::numeric_limits<double>::infinity() : energies.back();
+      const double most = energies.size() < followed_start_count()
+                              ? std::numeric_limits<double>::infinity()
+                              : energies.back();
       const StartShape shape = start.field(model.nodes());
       const SpanEnergy::Estimate estimated = model.estimate(shape.tangents);
       // A fit with few coefficients is smoother, and satisfying the constraints may straighten it.
@@ -283,7 +284,7 @@ class Search {
       start.cost = point.energy;
       energies.insert(std::upper_bound(energies.begin(), energies.end(), point.energy),
                       point.energy);
-      if (energies.size() > followed()) energies.pop_back();
+      if (energies.size() > followed_start_count()) energies.pop_back();
     }
   }
 
@@ -307,8 +308,8 @@ class Search {
       if (add(std::move(solution))) ++first;
     }
     if (!options_.wants_all()) return;
-    options_.log->tried(out_of_plane, own.starts());
-    options_.log->found(out_of_plane, first);
+    options_.log->count_tried(out_of_plane, own.starts());
+    options_.log->count_found(out_of_plane, first);
     for (const std::string& what : own.omitted()) options_.log->add_omitted(what);
   }
 
@@ -339,7 +340,7 @@ class Search {
   }
 
   /// Returns the solution to report if nothing was found in time, or nothing of the clamps' class.
-  [[nodiscard]] SpanSolution none() {
+  [[nodiscard]] SpanSolution failed_solution() {
     SpanSolution none = on_.empty_solution(on_.terms());
     none.x.setZero(none.model->size());
     none.multipliers.setZero(none.model->constraints());

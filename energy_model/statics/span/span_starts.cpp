@@ -225,8 +225,8 @@ std::optional<TangentField> field_on_obstacle(const Span& span, const Span::Obst
 
 /// Returns the arc lengths at which a start is compared with the prescribed frame at the end.
 Eigen::VectorXd comparison_arc_lengths(const Span& span) {
-  constexpr Eigen::Index points = 257;
-  return Eigen::VectorXd::LinSpaced(points, 0, span.length);
+  constexpr Eigen::Index sample_count = 257;
+  return Eigen::VectorXd::LinSpaced(sample_count, 0, span.length);
 }
 
 /// Returns the angle equal to `angle` modulo 4 pi that is nearest to zero, and the next one on the

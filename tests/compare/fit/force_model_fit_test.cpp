@@ -36,16 +36,16 @@ TEST(ForceModelFit, HookeChoosesPointsForTheTargetAndKeepsItOnHoldOutScenes) {
   const std::vector<Scene> holdouts = scenes_of({0.1, 2, 10, 20}, -30, BendingLaw::hooke);
   const ForceModelFit fit = fit_force_model(scenes, holdouts);
   EXPECT_NEAR(fit.order, 2, 0.1);
-  EXPECT_LE(fit.worst(), 1e-3);
-  EXPECT_LE(fit.worst_holdout(), 1e-3);
+  EXPECT_LE(fit.largest_deviation(), 1e-3);
+  EXPECT_LE(fit.largest_holdout_deviation(), 1e-3);
   // The error is of second order: a quarter of it requires twice the number of segments.
   const ForceModelFit finer = fit_force_model(scenes, {}, {.target = 1e-3 / 4});
   EXPECT_NEAR((finer.settings.points - 1.5) / (fit.settings.points - 1.5), 2, 0.15);
-  EXPECT_LE(finer.worst(), 1e-3 / 4);
+  EXPECT_LE(finer.largest_deviation(), 1e-3 / 4);
   // With 10 % fewer points the error exceeds the part of the target that is allowed for the
   // polygon.
   ForceModelFitOptions fewer{.points = fit.settings.points * 9 / 10};
-  EXPECT_GT(fit_force_model(scenes, {}, fewer).worst(), 0.9e-3);
+  EXPECT_GT(fit_force_model(scenes, {}, fewer).largest_deviation(), 0.9e-3);
 }
 
 TEST(ForceModelFit, StretchTakesATenthOfTheTargetAtMost) {
@@ -102,7 +102,7 @@ TEST(ForceModelFit, FittedStiffnessOfThePaperLawIsTheBest) {
 TEST(ForceModelFit, SeveralGrippersAreFittedToo) {
   Scene scene = test::two_clamps(5, {0.8, 0, 0});
   const ForceModelFit fit = fit_force_model({scene}, {});
-  EXPECT_LE(fit.worst(), 1e-3);
+  EXPECT_LE(fit.largest_deviation(), 1e-3);
 }
 
 // Between two pins a distance d apart a rod of length l hangs in a parabola with the sag f,

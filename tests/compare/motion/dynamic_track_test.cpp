@@ -18,7 +18,7 @@ namespace {
 
 TrackOptions options_at_rate(double rate) {
   TrackOptions options;
-  options.rates.frames = rate;
+  options.rates.frame_rate = rate;
   options.force = ForceModelRun::absent;
   options.samples = 21;
   options.solve.terms = 8;

@@ -62,7 +62,7 @@ Recording recording(unsigned seed, double seconds, double rate) {
   constexpr double begin = 0.8;
   std::vector<double> times{0};
   for (int k = 0; k <= seconds * rate + 0.5; ++k) times.push_back(begin + k / rate);
-  const FrameClock clock(result.scene, {times.front(), times.back()}, {.frames = rate});
+  const FrameClock clock(result.scene, {times.front(), times.back()}, {.frame_rate = rate});
   const SimulatedMotion run = MovingScene(result.scene, clock, result.damping, {}).run(times, 14);
   EXPECT_EQ(run.moved.frames.size(), times.size());
   std::normal_distribution<double> noise(0, marker_noise);

@@ -71,7 +71,7 @@ struct Swing {
   explicit Swing(const Scene& scene) : polygon(polygon_at_rest(scene, {})) {
     const PolygonModes modes =
         polygon_modes(polygon.stiffness, Eigen::VectorXd::Ones(polygon.masses.size()));
-    stiffness = modes.squares[0];
+    stiffness = modes.squared_frequencies[0];
     movement = modes.shapes.col(0);
   }
   [[nodiscard]] force_model::Simulation simulation(const Scene& scene, double amplitude) const {

@@ -27,7 +27,8 @@ TEST(FrameClock, ObstaclesAreWhereTheirOwnFrameBeforeHasThem) {
   constexpr double every = 0.04;
   for (const double begin : {0.0, 0.13}) {
     for (const double frames : {100.0, 60.0}) {
-      const FrameClock clock(scene, {begin, 0.5}, {.frames = frames, .obstacles = 1 / every});
+      const FrameClock clock(scene, {begin, 0.5},
+                             {.frame_rate = frames, .obstacle_rate = 1 / every});
       double last = begin;
       for (std::size_t frame = 0; frame < clock.frames(); ++frame) {
         const double time = clock.time(frame);

@@ -19,7 +19,7 @@ using energy_model::ContactKind;
 
 TrackOptions at_rate(double rate) {
   TrackOptions options;
-  options.rates.frames = rate;
+  options.rates.frame_rate = rate;
   options.force = ForceModelRun::absent;
   options.samples = 21;
   return options;
@@ -110,7 +110,7 @@ TEST(Track, EnergyGrowsByTheWorkBesideCouples) {
     expect_second_order(scene, 20, 0.03, 0.5);
     const Track result = track(scene, at_rate(40));
     EXPECT_FALSE(result.stopped) << result.stopped->why;
-    EXPECT_EQ(result.lost, 0);
+    EXPECT_EQ(result.lost_frames, 0);
   }
 }
 
@@ -181,7 +181,7 @@ TEST(Track, KeepsItsBranchWhereAPointBeginsToLie) {
     options.to = 1.45;
     const Track result = track(corner(), options);
     EXPECT_FALSE(result.stopped) << rate;
-    EXPECT_EQ(result.lost, 0) << rate;
+    EXPECT_EQ(result.lost_frames, 0) << rate;
     EXPECT_EQ(kinds_of(result),
               (std::vector<std::string>{"contact", "contact", "release", "release"}))
         << rate;
@@ -242,7 +242,7 @@ TEST(Track, TurningOverIsNoSnap) {
     const Track result = track(rod_with_reversed_clamp(), at_rate(rate));
     EXPECT_FALSE(result.stopped);
     EXPECT_TRUE(result.events.empty());
-    EXPECT_EQ(result.lost, 1);
+    EXPECT_EQ(result.lost_frames, 1);
   }
 }
 
@@ -262,9 +262,9 @@ TEST(Track, RepeatsAFrameThatItHasLostInSmallerSteps) {
   const Scene scene = load_scene(std::string(DLO_DATA) + "/scenes/swung_rod.toml");
   const Track coarse = track(scene, at_rate(5));
   const Track fine = track(scene, at_rate(100));
-  EXPECT_EQ(fine.repeated, 0);
-  EXPECT_GT(coarse.repeated, 0);
-  EXPECT_EQ(coarse.lost, 0);
+  EXPECT_EQ(fine.repeated_frames, 0);
+  EXPECT_GT(coarse.repeated_frames, 0);
+  EXPECT_EQ(coarse.lost_frames, 0);
   for (std::size_t i = 0; i < coarse.frames.size(); ++i) {
     const TrackFrame& same = fine.frames[std::min(20 * i, fine.frames.size() - 1)];
     ASSERT_NEAR(same.time, coarse.frames[i].time, 1e-12);
@@ -288,7 +288,7 @@ TEST(Track, GoesOnAtRestBeyondTheLastPose) {
   for (std::size_t i = 21; i < result.frames.size(); ++i) {
     EXPECT_LT((result.frames[i].shape.points - last_pose.shape.points).norm(), 1e-9) << i;
     EXPECT_NEAR(result.frames[i].work, last_pose.work, 1e-12) << i;
-    ASSERT_TRUE(result.frames[i].force) << result.force.none;
+    ASSERT_TRUE(result.frames[i].force) << result.force.missing_reason;
   }
   EXPECT_TRUE(result.events.empty());
 }
@@ -310,11 +310,11 @@ TEST(Track, RunsTheForceModelBesideIt) {
   scene.force_model.c_c = 200;
   TrackOptions options = at_rate(20);
   options.force = ForceModelRun::runs;
-  options.rates.steps = 4000;
+  options.rates.step_rate = 4000;
   const ForceTrackSummary hasty = track(scene, options).force;
-  options.rates.steps = 40000;
+  options.rates.step_rate = 40000;
   const ForceTrackSummary patient = track(scene, options).force;
-  EXPECT_EQ(hasty.none, "");
+  EXPECT_EQ(hasty.missing_reason, "");
   EXPECT_EQ(hasty.steps_per_frame, 200);
   EXPECT_LT(patient.largest, hasty.largest);
   EXPECT_LT(patient.mean, 2 * patient.rest_error + 1e-3);
@@ -325,10 +325,10 @@ TEST(Track, ErrorsOfTheForceModelAreSharesOfTheLength) {
   const Scene scene = load_scene(std::string(DLO_DATA) + "/scenes/swung_rod.toml");
   TrackOptions options = at_rate(50);
   options.force = ForceModelRun::runs;
-  options.rates.steps = 6000;
+  options.rates.step_rate = 6000;
   options.samples = 101;
   const Track result = track(scene, options);
-  ASSERT_EQ(result.force.none, "");
+  ASSERT_EQ(result.force.missing_reason, "");
   double sum = 0;
   for (const TrackFrame& frame : result.frames) {
     const Eigen::Matrix3Xd apart = frame.force->points - frame.shape.points;
@@ -379,7 +379,7 @@ TEST(Track, TheForceModelsLagIsTheDelayAtWhichItIsNearest) {
     std::vector<Eigen::Matrix3Xd> leader;
     std::vector<Eigen::Matrix3Xd> follower;
     for (const TrackFrame& frame : result.frames) {
-      ASSERT_TRUE(frame.force) << result.force.none;
+      ASSERT_TRUE(frame.force) << result.force.missing_reason;
       leader.push_back(frame.shape.points);
       follower.push_back(frame.force->points);
     }

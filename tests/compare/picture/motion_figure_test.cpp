@@ -78,7 +78,7 @@ TEST(WorstFrame, HasTheRecordingsPointsOnTheRodOfThatTime) {
   const Scene scene = in_plane();
   constexpr double up = 0.02;
   const MotionCheck check = checked_motion(scene, 0, up);
-  EXPECT_EQ(check.worst().time, 1.0);
+  EXPECT_EQ(check.worst_frame_error().time, 1.0);
   const Drawing drawing = worst_frame_drawing(check);
   ASSERT_EQ(drawing.views.size(), 1U);
   EXPECT_EQ(drawing.views[0].right, 0);

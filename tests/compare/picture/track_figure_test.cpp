@@ -18,7 +18,7 @@ struct Motion {
   explicit Motion(const std::string& name, double frame_rate)
       : scene(load_scene(DLO_DATA "/scenes/" + name + ".toml")) {
     options.rates = scene.track;
-    options.rates.frames = frame_rate;
+    options.rates.frame_rate = frame_rate;
     followed = track(scene, options);
   }
   [[nodiscard]] TrackFigures figures() const { return track_figures(scene, {followed}, options); }

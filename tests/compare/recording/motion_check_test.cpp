@@ -183,10 +183,10 @@ TEST(MotionCheck, SaysWhichFrameAndWhichPartOfTheRod) {
   wrong.position.z() += 0.02;
   const MotionCheck check = check_motion(scene, motion, {.damping = strong_damping});
   EXPECT_EQ(check.errors.worst_frame, 13U);
-  EXPECT_NEAR(check.worst().rms_m, 0.02 / std::sqrt(2), close_to_rod);
-  EXPECT_NEAR(check.worst().largest_m, 0.02, close_to_rod);
-  EXPECT_EQ(check.worst().largest_at_m, 0.35);
-  EXPECT_EQ(check.worst().time, wrong.time);
+  EXPECT_NEAR(check.worst_frame_error().rms_m, 0.02 / std::sqrt(2), close_to_rod);
+  EXPECT_NEAR(check.worst_frame_error().largest_m, 0.02, close_to_rod);
+  EXPECT_EQ(check.worst_frame_error().largest_at_m, 0.35);
+  EXPECT_EQ(check.worst_frame_error().time, wrong.time);
   ASSERT_EQ(check.errors.thirds.size(), 2U);  // the middle has no marker
   EXPECT_LT(check.errors.thirds[0].rms_m, close_to_rod);
   EXPECT_NEAR(check.errors.thirds[1].rms_m, 0.02 / std::sqrt(21), close_to_rod);

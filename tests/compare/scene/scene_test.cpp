@@ -153,8 +153,8 @@ TEST(SceneKeys, HaveTheNamesAndDefaultsOfTheSettings) {
   expect_choices("bending_rule", settings.bending_rule);
   EXPECT_EQ(scene_table("force_model").key("joint_law").choices(), names<energy_model::JointLaw>());
   EXPECT_EQ(scene_table("force_model").key("points").missing, std::to_string(settings.points));
-  EXPECT_EQ(std::stod(scene_table("track").key("frame_rate").missing), TrackRates{}.frames);
-  EXPECT_EQ(std::stod(scene_table("track").key("step_rate").missing), TrackRates{}.steps);
+  EXPECT_EQ(std::stod(scene_table("track").key("frame_rate").missing), TrackRates{}.frame_rate);
+  EXPECT_EQ(std::stod(scene_table("track").key("step_rate").missing), TrackRates{}.step_rate);
 }
 
 // The page and `dlo init` show each example; excludes and needs name keys of the same table.

@@ -54,7 +54,7 @@ force_per_length = [[0, 1, 0], [0, 3, 0], ["1 mN/m", 0, 0]]
   EXPECT_EQ(scene.distributed_loads[0].from, 0);
   EXPECT_EQ(scene.distributed_loads[0].to, 2);
   // The means of its halves are 2 and 1.5 N/m.
-  EXPECT_NEAR(scene.distributed_loads[1].between(0, 2).y(), 0.3 * 2 + 0.3 * 1.5, 1e-14);
+  EXPECT_NEAR(scene.distributed_loads[1].force_between(0, 2).y(), 0.3 * 2 + 0.3 * 1.5, 1e-14);
   EXPECT_NEAR(scene.distributed_between(0, 0.55).y(), 0.3 * 0.55 + 0.15 * 1.5, 1e-14);
 }
 

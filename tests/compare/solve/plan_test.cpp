@@ -266,7 +266,7 @@ TEST(Plan, SaysWhatGrippersTwistAndThatNoPolygonAnswersForIt) {
   EXPECT_FALSE(plan.planar);
   EXPECT_NEAR(plan.bound("twist"), 0.1, 0.09);
   EXPECT_TRUE(std::isinf(plan.bound("polygon")));
-  EXPECT_EQ(plan.neglected[4].what, "twist");
+  EXPECT_EQ(plan.neglected[4].name, "twist");
   EXPECT_EQ(plan.neglected[4].models, "chain, force (law paper only)");
 }
 

@@ -23,7 +23,7 @@ Eigen::Matrix3Xd two_points(double offset) {
 
 Outcome classify_late(const std::vector<double>& offsets, bool at_rest = false) {
   SimulationEnd trajectory{.finite = true, .at_rest = at_rest};
-  for (const double offset : offsets) trajectory.late.push_back(two_points(offset));
+  for (const double offset : offsets) trajectory.late_shapes.push_back(two_points(offset));
   return classify(trajectory, two_points(0), 1, 1e-3);
 }
 
@@ -42,8 +42,8 @@ TEST(Classify, TellsTheOutcomesApart) {
 TEST(Classify, SeesOscillationFromStepToStep) {
   // Samples at equal phases do not show the oscillation; consecutive steps do.
   SimulationEnd trajectory{.finite = true};
-  trajectory.late.assign(8, two_points(0.1));
-  for (int i = 0; i < 8; ++i) trajectory.last.push_back(two_points(i % 2 == 0 ? 0.1 : -0.1));
+  trajectory.late_shapes.assign(8, two_points(0.1));
+  for (int i = 0; i < 8; ++i) trajectory.last_shapes.push_back(two_points(i % 2 == 0 ? 0.1 : -0.1));
   EXPECT_EQ(classify(trajectory, two_points(0), 1, 1e-3), Outcome::oscillates);
 }
 

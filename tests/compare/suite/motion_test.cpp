@@ -73,7 +73,7 @@ TEST(MotionAnswers, TheVibrationHasTheFrequencyOfItsClosedForm) {
 /// shape.
 MarkerMotion recorded(const MotionReference& reference, double faster, double late, double decay) {
   MarkerMotion motion{.file = "made", .positions = {}};
-  for (const double time : dlo::compare::equal_arc_lengths(reference.until, reference.frames)) {
+  for (const double time : dlo::compare::equal_arc_lengths(reference.end_time, reference.frames)) {
     for (const double s : dlo::compare::equal_arc_lengths(reference.length, 9)) {
       const Eigen::Vector3d rest = reference.at_rest.at(0, s);
       const Eigen::Vector3d moved = reference.motion.at(faster * time - late, s);
@@ -86,7 +86,7 @@ MarkerMotion recorded(const MotionReference& reference, double faster, double la
 
 TEST(MotionCauses, NameWhatIsWrongAndNothingElse) {
   const MotionReference reference = motion_reference(moving_scene("motion_payload"));
-  EXPECT_GT(reference.travel, 0.3 * reference.length);
+  EXPECT_GT(reference.rms_displacement, 0.3 * reference.length);
   const auto expect = [&](const MarkerMotion& motion, const std::string& name, double factor) {
     EXPECT_GT(motion_error(reference, motion), 0.01) << name;
     const std::vector<Cause> causes = motion_causes(reference, motion);
@@ -96,8 +96,8 @@ TEST(MotionCauses, NameWhatIsWrongAndNothingElse) {
   };
   expect(recorded(reference, 0.95, 0, 0), "frequency wrong", 0.95);
   expect(recorded(reference, 1.2, 0, 0), "frequency wrong", 1.2);
-  expect(recorded(reference, 1, 0.06, 0), "late or early", 0.06 / reference.until);
-  expect(recorded(reference, 1, 0, 0.5), "damped", std::exp(-0.5 * reference.until));
+  expect(recorded(reference, 1, 0.06, 0), "late or early", 0.06 / reference.end_time);
+  expect(recorded(reference, 1, 0, 0.5), "damped", std::exp(-0.5 * reference.end_time));
   expect(recorded(reference, 1, 0, INFINITY), "inertia ignored", NAN);
   expect(recorded(reference, 0, 0, 0), "does not move", NAN);
   EXPECT_LT(motion_error(reference, recorded(reference, 1, 0, 0)), 1e-9);

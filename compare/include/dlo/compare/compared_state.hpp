@@ -29,12 +29,12 @@ struct ComparedEquilibrium {
   /// Returns the energy of the compared equilibrium minus that of the lowest known stable one [J];
   /// 0 for the lowest, and for a mirror image whose energy differs by rounding.
   [[nodiscard]] double energy_above_lowest_J() const {
-    constexpr double rounding = 1e-9;
+    constexpr double relative_energy_rounding = 1e-9;
     double above = 0;
     for (const UncomparedEquilibrium& other : others) {
       if (other.stable) above = std::max(above, -other.energy_difference_J);
     }
-    return above > rounding * std::abs(energy_J) ? above : 0;
+    return above > relative_energy_rounding * std::abs(energy_J) ? above : 0;
   }
 };
 

@@ -83,11 +83,11 @@ struct ForceModelFit {
   double bending_stiffness = 0;  ///< EI of the first scene [N m^2]
 
   /// Returns the largest stepped deviation of the fitted scenes [-].
-  [[nodiscard]] double worst() const;
+  [[nodiscard]] double largest_deviation() const;
   /// Returns the largest stepped deviation of the hold-out scenes [-]; 0 without any.
-  [[nodiscard]] double worst_holdout() const;
+  [[nodiscard]] double largest_holdout_deviation() const;
   /// Whether no scene's stepped deviation is above the target.
-  [[nodiscard]] bool reached() const;
+  [[nodiscard]] bool reaches_target() const;
   /// Returns sentences that explain why the target is not reached; empty if it is.
   [[nodiscard]] std::vector<std::string> shortfall_reasons() const;
 };

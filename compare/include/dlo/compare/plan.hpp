@@ -48,7 +48,7 @@ struct PlannedTwist {
 
 /// An effect that a model neglects, with a bound of its influence.
 struct Neglected {
-  std::string what;    ///< short name, as in Plan::bound
+  std::string name;    ///< short name, as in Plan::bound
   std::string models;  ///< models that neglect it
   /// Bound of the change of the shape, RMS along the rod [m]; infinite: no bound, or not
   /// negligible.

@@ -76,7 +76,7 @@ struct DistributedLoad {
   std::vector<Eigen::Vector3d> force_per_length;
 
   /// Returns the force on the rod between two arc lengths [N].
-  [[nodiscard]] Eigen::Vector3d between(double begin, double end) const;
+  [[nodiscard]] Eigen::Vector3d force_between(double begin, double end) const;
   /// Returns the integral of the absolute value of the load [N] by the trapezoidal rule; it is
   /// larger than the integral where the direction changes between two values, and not smaller than
   /// the absolute value of the resultant.
@@ -142,11 +142,11 @@ inline constexpr double assumed_poisson_ratio = 0.3;
 
 /// Sampling rates of a moving scene.
 struct TrackRates {
-  double frames = 1000;  ///< rate at which grippers are moved [Hz], > 0
+  double frame_rate = 1000;  ///< rate at which grippers are moved [Hz], > 0
   /// Rate at which obstacles are moved [Hz], > 0; empty: in every frame.
-  std::optional<double> obstacles;
+  std::optional<double> obstacle_rate;
   /// Steps of the force model per second [Hz], > 0.
-  double steps = 30000;
+  double step_rate = 30000;
 
   /// Compares all fields.
   bool operator==(const TrackRates&) const = default;
@@ -254,13 +254,13 @@ struct Scene {
   /// Whether a load has a couple.
   [[nodiscard]] bool has_couples() const;
   /// Checks that all loads have a potential (energy_model::has_potential).
-  /// @param who  model or computation that the message names, such as "the energy model"
+  /// @param model_name  model or computation that the message names, such as "the energy model"
   /// @throws InputError that names the drag, the first load that follows the rod, or the couples
-  void require_potential(const char* who) const;
+  void require_potential(const char* model_name) const;
   /// Checks that no load has a couple, and that all have a potential.
-  /// @param who  model or computation that the message names
+  /// @param model_name  model or computation that the message names
   /// @throws InputError as require_potential(), or that names the first load with a couple
-  void require_no_couples(const char* who) const;
+  void require_no_couples(const char* model_name) const;
   /// Returns int 1/GJ ds between two arc lengths [1/(N m)], with sections, for a rod that has a GJ.
   [[nodiscard]] double twisting_compliance(double begin, double end) const;
   /// Returns int 1/EI ds between two arc lengths [1/(N m)], EI about d1, with sections.

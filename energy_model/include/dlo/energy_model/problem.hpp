@@ -60,7 +60,7 @@ struct LineLoad {
   [[nodiscard]] Eigen::Vector3d slope() const { return (at_end - at_begin) / (end - begin); }
   /// Returns the force on the rod between two arc lengths [N]; negative if `to` is less than
   /// `from`.
-  [[nodiscard]] Eigen::Vector3d between(double from, double to) const;
+  [[nodiscard]] Eigen::Vector3d force_between(double from, double to) const;
 };
 
 /// A body that the rod's axis may not enter.
