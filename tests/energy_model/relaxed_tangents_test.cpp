@@ -67,7 +67,7 @@ TEST(RelaxedTangents, CloseTheirGapsAndComeToRest) {
       for (const auto& start : polygon_starts(span, mesh, motion)) {
         const RelaxedPolygon polygon = relax_polygon(span, mesh, start, motion, Deadline(10));
         const Eigen::Matrix3Xd tangents = polygon.tangents();
-        for (const GripGap& of : grip_gaps(span, mesh)) {
+        for (const ChordConstraint& of : grip_gaps(span, mesh)) {
           Eigen::Vector3d gap = -of.chord;
           for (Eigen::Index i = of.first; i < of.end; ++i) {
             gap += mesh.width(i) * tangents.col(i);

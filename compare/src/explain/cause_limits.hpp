@@ -15,10 +15,10 @@ inline constexpr double required_reduction_per_parameter = 0.5;
 /// `check`: deviations below this fraction, or below this share of the length, count as equal: fits
 /// end there.
 inline constexpr double equality_share = 0.02;
-inline constexpr double same_length = 1e-5;
+inline constexpr double equality_length_share = 1e-5;
 /// `check`: deviation, divided by the length, above which a shape is simply another one, so that a
 /// fraction of it is no small deviation.
-inline constexpr double another_shape = 0.05;
+inline constexpr double different_shape_share = 0.05;
 /// `check`: distance out of plane, divided by the length, above which a rod has left its plane. It
 /// is far above the energy model's error of 1e-9.
 inline constexpr double out_of_plane = 1e-3;

@@ -163,13 +163,14 @@ Eigen::MatrixXd covariance_of_numbers(const WireErrors& errors, const GaussNewto
 WireOptimum::WireOptimum(const WireProblem& problem, FittedRods& rods, const Eigen::VectorXd& start)
     : problem_(problem), rods_(rods), fit_(std::in_place, rods, start, problem.steps()) {
   descend();
-  for (int i = 0; i < most_weights && !fit_->before().isZero(); ++i) {
+  for (int i = 0; i < most_weights && !fit_->prior_inverse_deviations().isZero(); ++i) {
     const double weight = effective_variance(errors_, *fit_);
     if (std::abs(weight / fit_->weight() - 1) < weight_tolerance) break;
     fit_->set_data_variance(weight);
     descend();
   }
-  undetermined_ = undetermined_numbers(fit_->linear(), fit_->weight(), fit_->before());
+  undetermined_ =
+      undetermined_numbers(fit_->linear(), fit_->weight(), fit_->prior_inverse_deviations());
   if (!is_undetermined(0)) move_to_most_likely_modulus();
   here_ = fit_->rods();
   covariance_ = covariance_of_numbers(errors_, *fit_, problem.measured.frame_columns(),
@@ -205,7 +206,8 @@ double WireOptimum::quantile() const {
 }
 
 double WireOptimum::correlated_widening() const {
-  const double independent = posterior(fit_->linear(), fit_->variance(), fit_->before())(0, 0);
+  const double independent =
+      posterior(fit_->linear(), fit_->variance(), fit_->prior_inverse_deviations())(0, 0);
   const double alone = interval_quantile(problem_.options.noise, fit_->freedom());
   return std::sqrt(covariance_(0, 0) / independent) * quantile() / alone;
 }

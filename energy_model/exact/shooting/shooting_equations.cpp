@@ -82,12 +82,12 @@ struct ShootingSystem::Rows {
   /// @param blocks  derivatives of the difference
   void add(const Combinations& combinations, const Difference& difference,
            const std::vector<Block>& blocks) {
-    std::vector<Block> local_load;
+    std::vector<Block> combined;
     if (derivatives != nullptr) {
       for (const auto& [column, values] : blocks)
-        local_load.push_back({column, combinations * values});
+        combined.push_back({column, combinations * values});
     }
-    add(combinations * difference, local_load);
+    add(combinations * difference, combined);
   }
 };
 
@@ -173,7 +173,7 @@ void ShootingSystem::node_equations(const ShootingPoint& point, Eigen::Index i,
                                     const RodState& before, std::vector<Block> by_before,
                                     Rows& rows) const {
   const RodState& node = point.nodes[static_cast<std::size_t>(i)];
-  const Eigen::Index own_index = i * unknowns_per_node();
+  const Eigen::Index column = i * unknowns_per_node();
   contact_equations(node, i, rows);
   const auto [follows, follows_by_spin] = rotated_load(node, mesh_.follower_load.col(i));
   const auto [couple, couple_by_spin] = rotated_load(node, mesh_.follower_couple.col(i));
@@ -195,10 +195,10 @@ void ShootingSystem::node_equations(const ShootingPoint& point, Eigen::Index i,
     by_before.push_back({force_[index], Difference::Zero()});
     by_before.back().values.bottomRows(3) = -rate_ * rate_ * gap.gradient;
   }
-  if (rows.derivatives != nullptr) by_before.push_back({local_load, by_node * basis_});
+  if (rows.derivatives != nullptr) by_before.push_back({column, by_node * basis_});
   if (const RodSpan::Hold* hold = mesh_.hold[static_cast<std::size_t>(i)]) {
     rows.add(positions_.transpose() * (node.r - hold->position),
-             {{local_load, positions_.transpose() * basis_.topRows<3>()}});
+             {{column, positions_.transpose() * basis_.topRows<3>()}});
   } else {
     rows.add(combine(9, positions_.transpose() / (rate_ * rate_)), difference, by_before);
   }
@@ -227,7 +227,7 @@ bool ShootingSystem::interval_equations(const ShootingPoint& point, Eigen::Index
   // The end of an interval without a surface moves as its begin moves; on a surface the pressure
   // depends on r.
   const Eigen::Index shifts = piece.surface == nullptr ? positions_.cols() : 0;
-  const Eigen::Index own_index = i * unknowns_per_node();
+  const Eigen::Index column = i * unknowns_per_node();
   RodState end = point.nodes[static_cast<std::size_t>(i)];
   RodVariation change(12, 0);
   if (rows.derivatives != nullptr) change = basis_.rightCols(unknowns_per_node() - shifts);
@@ -239,13 +239,13 @@ bool ShootingSystem::interval_equations(const ShootingPoint& point, Eigen::Index
     const Eigen::Matrix3d rate = rotation_rate(rotation);
     by_end = width_derivatives(
         i, rate_of({piece.section, piece.natural, point.s[i + 1], 0, piece.surface}, end));
-    by_end.push_back({local_load, basis_.leftCols(shifts)});
-    by_end.push_back({local_load + shifts, change});
+    by_end.push_back({column, basis_.leftCols(shifts)});
+    by_end.push_back({column + shifts, change});
     for (Block& block : by_end) {
       block.values.middleRows(3, 3) = rate * block.values.middleRows(3, 3);
     }
     blocks = by_end;
-    blocks.push_back({local_load + unknowns_per_node(), -basis_});
+    blocks.push_back({column + unknowns_per_node(), -basis_});
     blocks.back().values.middleRows(3, 3) = -rate.transpose() * basis_.middleRows<3>(3);
   }
   Difference difference = Difference::Zero();

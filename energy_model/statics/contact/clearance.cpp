@@ -193,7 +193,7 @@ class Contacts {
     release_tensile();
     join();
     has_changed_ = wrong_;
-    const double depth = resolution_ == Resolution::resolved ? deepest : coarse_contact_tolerance;
+    const double depth = resolution_ == Resolution::resolved ? contact_tolerance : coarse_contact_tolerance;
     for (const GapMinimum& lowest : gap_minima(span_, shape_, -depth * span_.length)) {
       wrong_ = true;
       add(lowest);

@@ -60,7 +60,7 @@ Penetration judge_penetration(const Problem& problem, Equilibrium& equilibrium);
 
 /// Largest depth within a rigid obstacle of a shape that counts as on it, divided by the rod
 /// length: rounding.
-inline constexpr double deepest = 1e-9;
+inline constexpr double contact_tolerance = 1e-9;
 /// Largest depth, likewise, while coefficients may be missing.
 inline constexpr double coarse_contact_tolerance = 1e-6;
 

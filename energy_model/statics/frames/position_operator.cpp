@@ -62,6 +62,22 @@ PointOperator PositionOperator::at_begin(Eigen::Index element) const {
   return {begin(element), 0, Eigen::MatrixXd::Zero(0, 1)};
 }
 
+/// Returns weights of an element's nodes in linear functionals of the Legendre series that
+/// interpolates the values at the nodes.
+/// @param of_terms  value of the functional for each polynomial
+Eigen::MatrixXd PositionOperator::functional_weights(const Eigen::MatrixXd& of_terms) const {
+  return table_->weights.asDiagonal() * (table_->values * of_terms);
+}
+
+PointOperator PositionOperator::points(Eigen::Index element, const Eigen::VectorXd& shares) const {
+  const Eigen::Index Q = table_->nodes.size();
+  Eigen::VectorXd values(Q);
+  Eigen::MatrixXd integrals(Q, shares.size());
+  for (Eigen::Index j = 0; j < shares.size(); ++j) legendre(shares[j], values, integrals.col(j));
+  const double length = elements_[static_cast<std::size_t>(element)].length;
+  return {begin(element), element * Q, length * functional_weights(integrals)};
+}
+
 PointOperator PositionOperator::along(Eigen::Index element) const {
   const Eigen::Index Q = table_->nodes.size();
   const Eigen::Index first = element * Q;
@@ -76,7 +92,8 @@ Eigen::VectorXd PositionOperator::at(double s) const {
   const auto ends_before = [s](const Element& element) { return element.end() <= s; };
   const Eigen::Index element = std::min<Eigen::Index>(
       std::count_if(elements_.begin(), elements_.end(), ends_before), std::ssize(elements_) - 1);
-  return at(element, s).position;
+  const Element& own = elements_[static_cast<std::size_t>(element)];
+  return points(element, Eigen::VectorXd::Constant(1, (s - own.begin) / own.length)).weights(0);
 }
 
 PositionOperator::Point PositionOperator::at(Eigen::Index element, double s) const {
@@ -86,8 +103,7 @@ PositionOperator::Point PositionOperator::at(Eigen::Index element, double s) con
   Eigen::MatrixXd of_terms(Q, 3);
   legendre(xi, of_terms.col(1), of_terms.col(0));
   legendre_slopes(xi, of_terms.col(2));
-  // Weights of the element's nodes in functionals of the Legendre series through their values.
-  const Eigen::MatrixXd weights = table_->weights.asDiagonal() * (table_->values * of_terms);
+  const Eigen::MatrixXd weights = functional_weights(of_terms);
   Point point;
   point.position = begin(element);
   point.position.segment(element * Q, Q) += own.length * weights.col(0);

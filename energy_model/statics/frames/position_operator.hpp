@@ -69,6 +69,9 @@ class PositionOperator {
   /// Returns the weights of the point where an element begins; for the number of elements, of the
   /// span's end.
   [[nodiscard]] Eigen::VectorXd begin(Eigen::Index element) const;
+  /// Returns the weights of points of an element. @param shares  positions of the points, divided
+  /// by the element's length
+  [[nodiscard]] PointOperator points(Eigen::Index element, const Eigen::VectorXd& shares) const;
   /// Returns the weights of the point where an element begins, as the only point.
   [[nodiscard]] PointOperator at_begin(Eigen::Index element) const;
   /// Returns the weights of an element's begin, of its nodes and of its end.
@@ -85,6 +88,8 @@ class PositionOperator {
   [[nodiscard]] Point at(Eigen::Index element, double s) const;
 
  private:
+  [[nodiscard]] Eigen::MatrixXd functional_weights(const Eigen::MatrixXd& of_terms) const;
+
   std::vector<Element> elements_;
   const LegendreTable* table_ = nullptr;
   double anchor_ = 0;

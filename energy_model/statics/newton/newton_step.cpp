@@ -142,8 +142,8 @@ double NewtonStep::smallest_eigenvalue() {
 
 double NewtonStep::norm_with_multipliers() const {
   const Eigen::Index m = solution_.model->constraints();
-  if (m == 0) return size();
-  return std::hypot(size(),
+  if (m == 0) return step_norm();
+  return std::hypot(step_norm(),
                     buffers_.step.tail(m).norm() / scale_of_forces(solution_, options_.load));
 }
 

@@ -39,7 +39,7 @@ void SearchLog::add_omitted(const std::string& what) {
 
 void SearchLog::add_starts(const SearchLog& other, const std::string& suffix) {
   for (const SearchStrategy& strategy : other.strategies_) {
-    tried(strategy.name + suffix, strategy.tried);
+    count_tried(strategy.name + suffix, strategy.tried);
   }
   for (const std::string& what : other.omitted_) add_omitted(what);
 }
