@@ -47,10 +47,10 @@ inline constexpr double fitted_motion_left = 0.3;
 /// converge to the rod, and from which shapes approach another rod. The last one is smaller than
 /// the first since boundary layers may hardly be resolved.
 inline constexpr double second_order = 1.6;
-inline constexpr double no_order = 0.4;
+inline constexpr double nonconverging_order = 0.4;
 inline constexpr double approaching_order = 1.2;
 /// Tables: imbalance of the moments above which a shape is not at rest.
-inline constexpr double out_of_balance = 0.02;
+inline constexpr double rest_imbalance_limit = 0.02;
 /// Tables: error that needs no cause, divided by the length: 1e-3 of the default tolerance. The
 /// thickness of a real rod causes errors of this size.
 inline constexpr double negligible_error = 1e-5;

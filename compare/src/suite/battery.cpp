@@ -86,7 +86,7 @@ std::string builtin_file(std::string_view name) {
 
 }  // namespace
 
-std::vector<double> BatteryMotion::times() const { return equal_arc_lengths(until, frames); }
+std::vector<double> BatteryMotion::times() const { return equal_arc_lengths(end_time, frames); }
 
 const Battery& builtin_battery() {
   static const Battery battery = read_battery(

@@ -254,16 +254,16 @@ Pack certified_pack(const std::string& version, const std::vector<BatteryScene>&
   Pack pack{version, {}, {}};
   for (const BatteryScene& scene : scenes) {
     if (scene.motion) {
-      pack.motions.push_back({.of = scene});
+      pack.motions.push_back({.battery_scene = scene});
     } else {
-      pack.answers.push_back({.of = scene});
+      pack.answers.push_back({.battery_scene = scene});
     }
   }
   tbb::task_arena arena(arena_threads(threads));
   const auto certify = [&](auto& answers, const auto& certified) {
     execute(arena, [&] {
       tbb::parallel_for(std::size_t{0}, answers.size(),
-                        [&](std::size_t i) { answers[i] = certified(answers[i].of); });
+                        [&](std::size_t i) { answers[i] = certified(answers[i].battery_scene); });
     });
   };
   certify(pack.answers, certified_answer);
