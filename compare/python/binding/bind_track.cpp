@@ -130,7 +130,7 @@ AnyResult check_motion(const SharedScene& shared, const RecordedRows& rows, cons
     return compare::check_motion(scene, recorded, request,
                                  [&](auto, auto) { signals.throw_if_stopped(); });
   });
-  return texts_of(cli::motion_check_document(found));
+  return std::make_shared<Texts>(cli::motion_check_document(found));
 }
 
 }  // namespace

@@ -168,80 +168,8 @@ FitDocuments calibrate_force_model(const std::vector<SharedScene>& scenes,
     options.progress = [&signals](auto, auto) { signals.throw_if_stopped(); };
     return compare::fit_force_model(scenes_of(scenes), scenes_of(holdouts), options);
   });
-  const auto [text, json] = texts_of(cli::force_model_document(fit, target.has_value()));
-  return {text, json, cli::force_model_toml(fit)};
-}
-
-void bind_check(py::module_& module) {
-  using R = const compare::CheckResult&;
-  py::class_<Check, Result, std::shared_ptr<Check>> bound(
-      module, "Check",
-      "Result of check(): a shape compared with its scene's energy model. Arrays are views.");
-  bind_array(bound, "arc_length",
-             "Arc lengths at which the points lie on the rod [m], shape (M,), read only.",
-             [](const Check& c) { return &c.result.check.reference.arc_length; });
-  bind_array(bound, "points",
-             "Registered points in the order of arc_length [m], shape (M, 3), read only.",
-             [](const Check& c) { return &c.result.check.alignment.shape.points; });
-  bind_array(bound, "reference",
-             "Points of the energy model at arc_length [m], shape (M, 3), read only.",
-             [](const Check& c) { return &c.result.check.reference.points; });
-  const auto add = [&bound](const char* name, const char* words, auto get) {
-    bound.def_property_readonly(
-        name, [get](const Check& c) { return get(c.result); }, words);
-  };
-  add("passed", "Whether the shape is within the tolerance, 1 % of the length if none was given.",
-      [](R r) { return r.passes(); });
-  add("verdict",
-      "\"pass\", \"fail\", or \"undetermined\": within the tolerance, but the points do not "
-      "determine the rod.",
-      [](R r) { return std::string(compare::to_string(r.judgement.verdict)); });
-  add("significant",
-      "For a shape that passes: whether the rod without weight and loads would fail. None if "
-      "neither weight nor loads act, or if the shape without them was not found.",
-      [](R r) { return r.judgement.significant; });
-  add("deflection",
-      "Largest distance between the rod with and without weight and loads [m]; NaN if it was not "
-      "computed: the shape fails and the tolerance is not a share of it.",
-      [](R r) { return r.deflection_m; });
-  add("reason", "Reason for the verdict, as text.", [](R r) { return r.judgement.reason; });
-  add("rms", "RMS distance of the points from the rod [m].",
-      [](R r) { return r.check.deviation.rms_m; });
-  add("largest", "Largest distance of a point [m].", [](R r) { return r.check.deviation.max_m; });
-  add("energy_above_lowest",
-      "Energy of the equilibrium compared minus that of the lowest stable one known [J].",
-      [](R r) { return r.check.state.energy_above_lowest_J(); });
-  add("worst_point", "Number of the point with the largest distance, from 1 as in the file.",
-      [](R r) { return r.check.worst_point; });
-  add("deviation", deviation_words, [](R r) { return deviations(r.check); });
-  add("modulus_ratio", modulus_words, [](R r) { return r.check.effective_modulus.ratio; });
-  add("explanations",
-      "For a shape that fails: pairs (cause, RMS distance if the cause applies [m]), best first.",
-      [](R r) {
-        std::vector<std::pair<std::string, double>> list;
-        for (const compare::Explanation& e : r.explanations) list.emplace_back(e.cause, e.rms_m);
-        return list;
-      });
-}
-
-void bind_comparison(py::module_& module) {
-  py::class_<Comparison, Result, std::shared_ptr<Comparison>> bound(
-      module, "Comparison", "Result of compare(): force model and energy model of a scene.");
-  bind_array(bound, "arc_length",
-             "Arc lengths of the force model's points [m], shape (N,), read only.",
-             [](const Comparison& c) { return &c.result.reference.arc_length; });
-  bind_array(bound, "force_points",
-             "Points of the force model at rest [m], shape (N, 3), read only.",
-             [](const Comparison& c) { return &c.result.force.shape.points; });
-  bind_array(bound, "energy_points",
-             "Points of the energy model at arc_length [m], shape (N, 3), read only.",
-             [](const Comparison& c) { return &c.result.reference.points; });
-  bound
-      .def_property_readonly(
-          "deviation", [](const Comparison& c) { return deviations(c.result); }, deviation_words)
-      .def_property_readonly(
-          "modulus_ratio", [](const Comparison& c) { return c.result.effective_modulus.ratio; },
-          modulus_words);
+  return {std::make_shared<Texts>(cli::force_model_document(fit, target.has_value())),
+          cli::force_model_toml(fit)};
 }
 
 }  // namespace

@@ -215,18 +215,15 @@ void StaticRuns::run(StaticSeries& series, int size) {
                               ? reference_.agreement
                               : error_of(scene_, solved.shape, reference_.rod);
   }
-  if (!problem.empty()) {
-    failures_.push_back({scene_.name, series.program->name, points, std::move(problem)});
-    return;
-  }
-  if (series.last_points == 0) {
-    for (const std::string& note : result.shape->notes) {
+  if (is_program && series.last_size == 0) {
+    for (const std::string& note : foreign.shape->notes) {
       notes_.push_back(fmt::format("{}: {}: {}", scene_.name, run.program, note));
     }
   }
-  run.time = timing_of(std::move(times));
-  series.last_s = run.time.median_s;
-  series.last_points = points;
+  run.evaluations = solved.evaluations;
+  run.time = *time;
+  series.last_s = time->median_s;
+  series.last_size = size;
   series.runs.push_back(std::move(run));
 }
 
