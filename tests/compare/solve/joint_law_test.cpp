@@ -100,7 +100,7 @@ TEST(ModelChain, LawIsAKeyOfTheSceneThatOtherModelsRefuse) {
   const Scene scene = parse_scene(text + "joint_law = \"binormal\"\n", "my.toml");
   EXPECT_EQ(scene.force_model.joint_law, JointLaw::binormal);
   const std::string of_force = error_of<InputError>([&] { (void)solve(scene, Model::force); });
-  EXPECT_TRUE(has_all(of_force, {"no other model than chain has it"}));
+  EXPECT_TRUE(has_all(of_force, {"only model chain supports this key"}));
   EXPECT_EQ(error_of<InputError>([&] { (void)compare(scene); }), of_force);
   EXPECT_TRUE(has_all(error_of<InputError>([&] {
                         (void)parse_scene(text + "law = \"paper\"\njoint_law = \"linear\"\n",
