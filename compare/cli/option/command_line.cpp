@@ -69,7 +69,9 @@ CLI::Validator number_check(std::function<double(const std::string&)> read,
             } catch (const compare::InputError& error) {
               problem = error.what();
             }
-            return fmt::format("{}: {} (allowed: {})", text, problem, allowed);
+            const bool complete = problem.find("(allowed: ") != std::string::npos;
+            return fmt::format("{}: {}{}", text, problem,
+                               complete ? "" : fmt::format(" (allowed: {})", allowed));
           },
           ""};
 }

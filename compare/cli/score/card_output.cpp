@@ -92,7 +92,7 @@ Json rows_of(const Card& card) {
         {"class", group.name},
         {"right", fmt::format("{} of {}", group.right, group.scenes - group.not_supported)}};
     for (std::size_t i = 0; i < card.points.size(); ++i) {
-      row[fmt::format("N = {}", card.points[i])] = number_word("{:.1e}", group.largest[i]);
+      row[fmt::format("{} points", card.points[i])] = number_word("{:.1e}", group.largest[i]);
     }
     row["order"] = number_word("{:.1f}", group.order);
     row["time"] = fmt::format("{:.2g} s", group.seconds);

@@ -95,7 +95,7 @@ std::string comparison_text(const compare::Comparison& c) {
       .json = picked(comparison_json(c),
                      {"gamma", "law", "bookkeeping", "points", "undeformed_rms_over_length",
                       "neglected", "contacts", "state/energy_above_lowest_J", "state/stable_found",
-                      "state/unstable_found"}),
+                      "state/unstable_found", "state/others"}),
       .large = {.length = c.length, .energy = std::abs(c.state.energy_J)}};
   if (details.json.contains("contacts")) count_from_1(details.json["contacts"]);
   details.json["error_budget"] = budget_rows(c);
