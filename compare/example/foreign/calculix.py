@@ -36,7 +36,7 @@ FEWEST_TWISTED = 7  # bricks of a rod whose end is turned: three came to no end,
 NOT_SUPPORTED = 3  # exit status of a scene that it does not have
 
 
-def fail_as_unsupported(why):
+def fail(why):
     sys.exit(f"calculix.py: {why}")
 
 
@@ -170,7 +170,7 @@ class Rod:
         return middles
 
 
-def displacement_of_second_grip(rod):
+def path_of_second_grip(rod):
     """Yields the poses of the second grip on its path: (position, function that rotates a vector)."""
     first, second = rod.scene["grippers"]
     length, direction = rod.s[-1], rod.direction
@@ -210,7 +210,7 @@ def loading(rod, parts, increment):
         refuse("more than two grips")
     if len(scene["grippers"]) == 2:
         held.append(rod.planes[-1])
-        way = list(displacement_of_second_grip(rod))
+        way = list(path_of_second_grip(rod))
         duration = (len(way) - 1) / PER_STAGE
         straight = mix((1, rod.origin), (rod.s[-1], rod.direction))
         for node in rod.planes[-1]:
@@ -268,7 +268,7 @@ def solved(rod):
         axis = rod.axis_of(moved) if moved else []
         if moved and not is_folded(axis, rod.s):
             return axis
-    fail_as_unsupported(problem or "ccx: an element was turned inside out")
+    fail(problem or "ccx: an element was turned inside out")
 
 
 def main(scene_file, points, shape_file, thinner=1):

@@ -49,11 +49,11 @@ class Scene(Strict):
     medium, track: a dict, or ForceModelSettings, Medium and TrackRates. materials: a file in which names of materials
     are looked up instead of the built-in one.
 
-    Fields are the keys of the file and of its table [rod]. Every field can be read (in SI units; 0 for a dimension or
-    a property of the material that the scene does not have, None for any other key that is not given) and, unless it is
-    derived, set (None: as if it had not been given). The reader of scene files checks the value: if it is out of range,
-    InputError names the key, and the scene is unchanged. replace() returns a scene with several fields changed at once,
-    for fields that are valid only together.
+    Fields are the keys of the file and of its table [rod]. Every field can be read in SI units and, unless it is
+    derived, set (None: as if it had not been given). A dimension or a property of the material that the scene does not
+    have is 0; any other key that is not given has its default, or None. The reader of scene files checks the value: if
+    it is out of range, InputError names the key, and the scene is unchanged. replace() returns a scene with several
+    fields changed at once, for fields that are valid only together.
     """
 
     def __init__(
