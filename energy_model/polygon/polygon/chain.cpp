@@ -7,7 +7,6 @@
 #include <numbers>
 
 #include "base/deadline.hpp"
-#include "base/minimise.hpp"
 #include "base/require.hpp"
 #include "polygon/polygon_energy.hpp"
 

@@ -57,10 +57,10 @@ struct [[nodiscard]] ChainResult {
   /// in the plane only.
   SolveStatus status = SolveStatus::not_run;
   std::string message = "never ran";  ///< the status in words
-  int evaluations = 0;  ///< evaluations of energy and gradient by NLopt and Newton's method
-  double seconds = 0;   ///< wall time [s]
-  /// Norm of the gradient with respect to the segment angles [N m]; -1 if Newton's method did not
-  /// begin.
+  int evaluations = 0;                ///< evaluations of energy and gradient
+  double seconds = 0;                 ///< wall time [s]
+  /// Norm of the gradient with respect to the segment angles [N m]; -1 if a limit was reached
+  /// before the first Newton step.
   double residual = -1;
   /// Torque about `start` that the clamp of the first segment exerts, computed from the moment of
   /// the first joint and the force beyond it [N m].
@@ -72,9 +72,9 @@ struct [[nodiscard]] ChainResult {
   double load_energy = 0;  ///< potential of all forces, zero with every point at `start` [J]
 };
 
-/// Minimises the joint potentials minus the work of the forces with NLopt's LD_LBFGS over the joint
-/// angles. Newton steps over the segment angles (a tridiagonal matrix) then refine and prove the
-/// minimum.
+/// Minimises the joint potentials minus the work of the forces by damped Newton steps over the
+/// segment angles (a tridiagonal matrix). No step increases the energy beyond rounding. The Hessian
+/// at the end proves the minimum.
 /// @throws std::invalid_argument if the problem or an option is out of range
 ChainResult solve_chain(const ChainProblem& problem, const ChainOptions& options = {});
 
