@@ -338,7 +338,7 @@ SpanSearchResult scan_tip(const RodSpan& span, double tolerance, const Deadline&
   }
   result.complete = !shooter.out_of_time;
   if (shooter.failures > 0 || shooter.integrations > most_integrations) {
-    result.not_searched = "some shots from the tip failed";
+    result.not_searched = "some shots from the tip failed or were omitted";
   }
   if (result.found.empty()) {
     result.found.emplace_back();
