@@ -62,8 +62,8 @@ TEST(NeutralDirections, AStripHasOneWhicheverWayItIsWeak) {
 }
 
 TEST(NeutralDirections, EulersColumnHasTwoAtItsLoadAndIsNoBetterDeterminedThere) {
-  // The smallest eigenvalue is 1 - P / (pi/2)^2. A load that is half of the threshold `neutral`
-  // below buckling still counts as neutral.
+  // The smallest eigenvalue is 1 - P / (pi/2)^2. It still counts as zero if the load is below
+  // buckling by half of `zero_eigenvalue_limit`.
   const auto column = [](double below) {
     Problem problem = heavy_cantilever(0, 90);
     problem.grips[0].direction = Eigen::Vector3d::UnitX();

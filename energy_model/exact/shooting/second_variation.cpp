@@ -156,8 +156,8 @@ class VariationProblem {
     }
   }
 
-  /// Adds a Place with its unknowns. Multipliers precede dr, because dr has a pivot only through
-  /// them.
+  /// Adds a ConstrainedPosition with its unknowns. Multipliers precede dr, because dr has a pivot
+  /// only through them.
   void add_place(Eigen::Index end, const Eigen::Matrix3Xd& basis, const Eigen::Matrix3d& hessian) {
     const Eigen::Index multipliers = places_.empty() ? 0 : 3;
     places_.push_back({end, basis, hessian, size_ + multipliers, size_});

@@ -48,7 +48,7 @@ Eigen::MatrixX3d SpanDynamics::tangent_gradient(const ContactPoint& touch,
 }
 
 /// Adds the derivatives of the contact forces by the unknowns.
-/// @param derivative  Touch::by_depth or Touch::by_rate
+/// @param derivative  ContactPoint::by_depth or ContactPoint::by_rate
 void SpanDynamics::add_contact_derivatives(double ContactPoint::*derivative,
                                            Eigen::MatrixXd& matrix) {
   for (const ContactPoint& touch : contact_points_) {

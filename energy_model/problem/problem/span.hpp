@@ -94,7 +94,7 @@ struct Span {
   std::optional<Twist> twist;  ///< if clamps hold frames at both ends; the span is then not planar
   std::vector<Part> parts;     ///< intervals with another cross-section, by growing s
   /// Ends of elements by growing s, taken from a known shape, in place of the estimated decay
-  /// lengths of layers (pieces_of()); empty: no shape is known.
+  /// lengths of layers (elements_of()); empty: no shape is known.
   std::vector<double> cuts;
   /// Additional ends of elements: where contact with soft obstacles begins and ends, by growing s.
   std::vector<double> contact_ends;

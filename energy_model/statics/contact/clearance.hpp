@@ -72,8 +72,8 @@ enum class Resolution {
 };
 
 /// Checks whether the contacts are those of an equilibrium: no obstacle pulls (concentrated forces
-/// and pressures are above -1e-7 of all forces), and no point is deeper than `deepest`
-/// (`coarse_contact_tolerance`) rod lengths within one.
+/// and pressures are above -1e-7 of all forces), and no point is deeper within an obstacle
+/// than `contact_tolerance` rod lengths (`coarse_contact_tolerance` unless resolved).
 /// @return std::nullopt if so; otherwise the contacts to try next: points that pull are released,
 ///   parts that pull at an end or are too short become a point, parts that pull between their ends
 ///   become two points, contacts that meet are joined, and contacts are added where the rod is

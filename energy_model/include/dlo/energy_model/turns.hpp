@@ -57,8 +57,8 @@ struct HeldTurns {
 /// Returns the angle by which the frame at the end of a shape that ignores the end frame has to be
 /// rotated [rad], so that the shape has the prescribed turns. If only its writhe modulo two is
 /// known, this is the smallest angle that reaches their homotopy class.
-/// @param ahead   angle from the shape's d1 to the prescribed d1 without roll, up to whole turns
-///               [rad]
+/// @param frame_angle  angle from the shape's d1 to the prescribed d1 without roll, up to whole
+///                     turns [rad]
 /// @param twist   twist of the shape [rad]
 /// @param writhe  writhe of the shape; empty: unknown, `frame_angle` is reduced to (-pi, pi]
 [[nodiscard]] double end_rotation(const HeldTurns& held, double frame_angle, double twist,
