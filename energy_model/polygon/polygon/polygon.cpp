@@ -113,7 +113,7 @@ class PolygonDescent {
   struct IterationState {
     double damping = 0;
     double last_step = std::numeric_limits<double>::infinity();
-    double last_stiffening = 0;
+    double last_incomplete_step = 0;
     double saddle_step = first_escape_step;
     int slow_steps = 0;  // consecutive steps with an incomplete Hessian that became shorter
     int escapes = 0;
@@ -182,7 +182,7 @@ class PolygonDescent {
       energy_ = trial_energy;
       assemble(HessianTerms::all);
       iteration_.damping = iteration_.damping < 4 * first_damping ? 0 : iteration_.damping / 8;
-      const bool slow = !exact && size < std::exchange(iteration_.last_stiffening, size);
+      const bool slow = !exact && size < std::exchange(iteration_.last_incomplete_step, size);
       iteration_.slow_steps = slow ? iteration_.slow_steps + 1 : 0;
     } else if (exact && iteration_.damping == 0 && options_.project_hessian) {
       assemble(HessianTerms::positive_terms);

@@ -271,21 +271,21 @@ void polygon_hessian(const PolygonProblem& problem, const Points& points, Hessia
     const Joint j = joint(problem.law, joint_stiffness(problem, i), joint_length(problem, i), c.h);
     const double curved = (all ? j.second : std::max(j.second, 0.0)) / 4;
     const double slope = -j.first / 2;  // derivative of the potential by cos alpha
-    const Eigen::Matrix3d projector = one - c.u * c.u.transpose();
-    const Eigen::Matrix3d beside_v = one - c.v * c.v.transpose();
+    const Eigen::Matrix3d projector_u = one - c.u * c.u.transpose();
+    const Eigen::Matrix3d projector_v = one - c.v * c.v.transpose();
     // h is |v - u|^2 / 4. The part of its second derivative from first-order changes of u and v is
     // never negative.
-    Eigen::Matrix3d of_u = projector / c.a;
-    Eigen::Matrix3d of_v = beside_v / c.b;
+    Eigen::Matrix3d of_u = projector_u / c.a;
+    Eigen::Matrix3d of_v = projector_v / c.b;
     if (all) {
       const double cosine = 1 - 2 * c.h;
-      of_u = c.u * c.by_a.transpose() + c.by_a * c.u.transpose() + cosine / c.a * projector;
-      of_v = c.v * c.by_b.transpose() + c.by_b * c.v.transpose() + cosine / c.b * beside_v;
+      of_u = c.u * c.by_a.transpose() + c.by_a * c.u.transpose() + cosine / c.a * projector_u;
+      of_v = c.v * c.by_b.transpose() + c.by_b * c.v.transpose() + cosine / c.b * projector_v;
     }
     Eigen::Matrix3d aa = curved * c.by_a * c.by_a.transpose() - slope / c.a * of_u;
     Eigen::Matrix3d bb = curved * c.by_b * c.by_b.transpose() - slope / c.b * of_v;
     const Eigen::Matrix3d ab =
-        curved * c.by_a * c.by_b.transpose() + slope / (c.a * c.b) * projector * beside_v;
+        curved * c.by_a * c.by_b.transpose() + slope / (c.a * c.b) * projector_u * projector_v;
     if (all && problem.natural_turns.size() > 0) {
       const double couple = natural_turn(problem, i).couple;
       aa += couple * angle_hessian(c.u, c.a);

@@ -73,13 +73,13 @@ void remove_redundant_obstacles(Span& span) { remove_contained(span, rounding, s
 
 bool omit_similar_obstacles(Span& span, std::size_t preferred) {
   // Distance in lengths; also the angle between similar floors [rad].
-  constexpr double similar_floor_tolerance = 1e-3;
+  constexpr double similar_body_tolerance = 1e-3;
   std::vector<Span::Obstacle>& all = span.rigid_obstacles;
   std::stable_partition(all.begin(), all.end(), [&](const Span::Obstacle& obstacle) {
     return obstacle.index == preferred;
   });
   const std::size_t before = all.size();
-  remove_contained(span, similar_floor_tolerance, preferred);
+  remove_contained(span, similar_body_tolerance, preferred);
   return all.size() < before;
 }
 
