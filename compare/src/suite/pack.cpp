@@ -57,12 +57,13 @@ double bound_of_points(double metres, int decimals, double unit = 1) {
 }
 
 /// Rounds to decimals; adding zero avoids -0.
-double round_length(double value, int decimals) {
+double round_to_decimals(double value, int decimals) {
   return as_number<double>(fmt::format("{:.{}f}", value, decimals)).value() + 0.0;
 }
 
 Json places(const std::vector<double>& values, int decimals) {
-  return json_list(values, [&](double value) -> Json { return round_length(value, decimals); });
+  return json_list(values,
+                   [&](double value) -> Json { return round_to_decimals(value, decimals); });
 }
 
 Json point_json(const Eigen::Vector3d& point, int decimals) {
@@ -163,9 +164,9 @@ std::string answer_csv(const Answer& answer) {
   const Shape& shape = answer.first.shape;
   for (std::size_t i = 0; i < shape.arc_length.size(); ++i) {
     for (const double x : shape.points.col(static_cast<Eigen::Index>(i))) {
-      text += fmt::format("{:.12f},", round_length(x, answer_decimals));
+      text += fmt::format("{:.12f},", round_to_decimals(x, answer_decimals));
     }
-    text += fmt::format("{:.12f}\n", round_length(shape.arc_length[i], answer_decimals));
+    text += fmt::format("{:.12f}\n", round_to_decimals(shape.arc_length[i], answer_decimals));
   }
   return text;
 }
@@ -173,8 +174,8 @@ std::string answer_csv(const Answer& answer) {
 /// Returns the points of an answer in VTK's XML format, for ParaView.
 std::string answer_vtu(const Answer& answer) {
   Shape shape = answer.first.shape;
-  for (double& x : shape.points.reshaped()) x = round_length(x, answer_decimals);
-  for (double& s : shape.arc_length) s = round_length(s, answer_decimals);
+  for (double& x : shape.points.reshaped()) x = round_to_decimals(x, answer_decimals);
+  for (double& s : shape.arc_length) s = round_to_decimals(s, answer_decimals);
   return vtu_polyline(shape);
 }
 
@@ -186,7 +187,7 @@ std::string motion_csv(const MotionAnswer& answer) {
       const Eigen::Vector3d point = answer.frames[k].col(static_cast<Eigen::Index>(i));
       std::vector<double> row = {answer.times[k], answer.arc_length[i], point.x(), point.y(),
                                  point.z()};
-      for (double& value : row) value = round_length(value, motion_decimals);
+      for (double& value : row) value = round_to_decimals(value, motion_decimals);
       text += fmt::format("{}\n", fmt::join(row, ","));
     }
   }
