@@ -34,8 +34,8 @@ double equal_deviation(double before, double length) {
                   limits::equality_length_share * length);
 }
 
-/// Returns a price that combines the remaining deviation with the number of fitted numbers; smaller
-/// is better. Remaining deviations below the limit of equality count as that limit.
+/// Returns a criterion that combines the remaining deviation with the number of fitted numbers;
+/// smaller is better. Remaining deviations below the limit of equality count as that limit.
 /// @param before  deviation to explain [m];  @param length  of the rod [m]
 double model_criterion(double rms, int numbers, double before, double length) {
   return std::max(rms, equal_deviation(before, length)) *
@@ -282,11 +282,11 @@ class Search {
       if (!cause.part) {
         explanation.rms_m = whole_rod_distances(measured, aligned, sample, scene_.length).rms_m;
       }
-      const double price_of_this = criterion(explanation);
+      const double this_criterion = criterion(explanation);
       const bool has_all_points = cause.shape.points.cols() == shape_.points.cols();
       if (has_all_points && explanation.rms_m <= limits::check_left * deviation_to_explain_ &&
-          (!best_corrected_ || price_of_this < best_corrected_->criterion)) {
-        best_corrected_ = {explanation.cause, aligned.shape, explanation.numbers, price_of_this};
+          (!best_corrected_ || this_criterion < best_corrected_->criterion)) {
+        best_corrected_ = {explanation.cause, aligned.shape, explanation.numbers, this_criterion};
       }
       add(std::move(explanation), cause.cause_group);
     } catch (const InputError&) {
@@ -353,7 +353,7 @@ class Search {
     int numbers;
     double criterion;
   };
-  std::optional<CorrectedShape> best_corrected_;  // the one with the lowest price
+  std::optional<CorrectedShape> best_corrected_;  // file with the smallest criterion
   Timer timer_;
 };
 

@@ -17,7 +17,7 @@ namespace dlo::compare {
 /// A possible error of a scene, described by numbers that are zero without the error.
 struct SceneCause {
   Eigen::VectorXd start;            ///< start of the fit
-  Eigen::VectorXd difference_step;  ///< strides of differences; zero: the start is not fitted
+  Eigen::VectorXd difference_step;  ///< steps of differences; zero: the start is not fitted
   double longest_step = 0;          ///< longest step of any number
   std::function<Scene(const Eigen::VectorXd&)> changed;
   std::function<std::string(const Scene& changed, const Eigen::VectorXd&)> words;

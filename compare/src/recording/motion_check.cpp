@@ -37,7 +37,7 @@ constexpr int fewest_frames = 4;  // as many as a cubic needs
 /// own rate.
 constexpr double frames_per_recorded = 4;
 /// Number of frames up to which the scene's own frame rate is used.
-constexpr double default_frame_count = 2000;
+constexpr double most_frames_at_scene_rate = 2000;
 
 /// The rod by both models, as far as they exist.
 struct Models {
@@ -62,7 +62,7 @@ TrackOptions track_options(const Scene& scene, const RecordedTimes& times,
   const double to = times.last + lag_range_share * (times.last - times.first);
   const double rate = request.frame_rate.value_or(
       std::max(frames_per_recorded * (times.count - 1) / (times.last - times.first),
-               std::min(scene.track.frame_rate, default_frame_count / (to - from))));
+               std::min(scene.track.frame_rate, most_frames_at_scene_rate / (to - from))));
   const double frames = std::max<double>(fewest_frames, std::ceil((to - from) * rate));
   TrackOptions options{.from = from,
                        .to = to,
