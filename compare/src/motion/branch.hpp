@@ -39,8 +39,8 @@ struct SolvedInstant {
 
 /// How the rod reached a frame from the one before.
 struct Passage {
-  bool stayed_on_branch = true;  ///< it stayed on its branch: each shape is close to the one
-                                 ///< before, and the energy balances
+  bool stayed_on_branch = true;    ///< it stayed on its branch: each shape is close to the one
+                                   ///< before, and the energy balances
   bool has_smaller_steps = false;  ///< whether steps smaller than a frame were made
   bool is_stationary = false;      ///< whether nothing moved
   /// If the branch was not kept: whether its end was observed, as loss of stability or as a
