@@ -67,8 +67,7 @@ class ActiveSet {
 
 /// Solves for the equilibrium near a known one (SpanOptions::start) of a span whose grips or
 /// obstacles have moved a little: Newton's method with its contacts from that shape, then updates
-/// by ActiveSet. There is no search. The result is `followed` if it
-/// is stable or a singular point.
+/// by ActiveSet. There is no search. The result is `followed` if it is stable or a singular point.
 [[nodiscard]] SpanSolution follow_contacts(const Span& searched, const SpanOptions& options,
                                            SpanWorkspace& workspace);
 

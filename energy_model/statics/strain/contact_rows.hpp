@@ -31,7 +31,7 @@ class ContactRows {
              const LegendreTable& table);
 
   [[nodiscard]] Eigen::Index count() const { return linear_.cols(); }
-  /// Resizes a place.
+  /// Resizes the matrices of an evaluation.
   void resize(ContactEvaluation& place) const;
   /// Evaluates the rows at a shape. @param tangents  nodes x 3
   void evaluate(const Eigen::MatrixX3d& tangents, ContactEvaluation& place) const;
