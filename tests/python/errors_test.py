@@ -220,7 +220,7 @@ def test_arguments_of_a_wrong_kind_are_named(cable):
         (lambda: dlo.solve(cable, samples="a"), r"samples = 'a': a str \(allowed: an integer\)"),
         (lambda: dlo.solve(cable, samples=2**40), r"samples = 1099511627776: out of range \(allowed"),
         (lambda: dlo.solve(cable, model=3), r"model = 3: a int \(allowed: text\)"),
-        (lambda: dlo.solve(cable, model="\ud800"), r"model = .*half a character \(allowed: Unicode"),
+        (lambda: dlo.solve(cable, model="\ud800"), r"model = .*unpaired surrogate \(allowed: Unicode"),
         (lambda: dlo.solve(cable, max_steps=1.5), r"max_steps = 1.5: a float \(allowed: an integer"),
         (lambda: dlo.solve(cable, terms=2**70), r"terms = 1180591620717411303424: out of range \(allowed"),
         (lambda: dlo.solve(cable, time_limit="1 s"), r"time_limit = '1 s': a str \(allowed: a number"),
@@ -237,7 +237,7 @@ def test_arguments_of_a_wrong_kind_are_named(cable):
         (lambda: cable.replace(force_model={1: 2}), r"force_model: a key = 1: a int \(allowed: text"),
         (lambda: dlo.solve(cable).plot("x.svg"), r"ax = 'x.svg': a str \(allowed: axes of matplotlib, or None; plot"),
         (lambda: dlo.Scene.from_text(b""), r"text = b'': a bytes \(allowed: text"),
-        (lambda: dlo.Scene.from_file("\ud800"), r"scene: a file's name with half a character"),
+        (lambda: dlo.Scene.from_file("\ud800"), r"scene: a file's name with an unpaired surrogate"),
     ]:
         with pytest.raises(dlo.InputError, match=words):
             call()

@@ -229,7 +229,7 @@ def test_values_that_hold_themselves_are_refused(cable):
 
 def test_values_that_no_file_has_name_their_key(cable):
     for value, words in [
-        ("\ud800", r"gravity: text with half a character \(allowed: Unicode"),
+        ("\ud800", r"gravity: text with an unpaired surrogate \(allowed: Unicode"),
         (2**64, r"gravity: an integer out of range \(allowed: up to 64 bits"),
         ({1: 2}, r"gravity: a key that is a int \(allowed: text"),
         ((x for x in "abc"), r"gravity: a generator \(allowed: a number, text"),

@@ -37,12 +37,16 @@ void require_within_limits(const Place& place) {
   }
 }
 
+/// Returns a Python text in UTF-8.
+/// @param path  field of the scene, for the message
+/// @throws InputError if the text contains an unpaired surrogate
 std::string text_from(const py::handle& text, const std::string& path) {
   Py_ssize_t size = 0;
   const char* data = PyUnicode_AsUTF8AndSize(text.ptr(), &size);
   if (data != nullptr) return {data, static_cast<std::size_t>(size)};
   PyErr_Clear();
-  throw InputError(fmt::format("scene: {}: text with half a character (allowed: Unicode)", path));
+  throw InputError(
+      fmt::format("scene: {}: text with an unpaired surrogate (allowed: Unicode)", path));
 }
 
 std::int64_t integer_from(const py::handle& number, const std::string& path) {

@@ -30,7 +30,7 @@ def _kind(allowed: str, convert: Callable[[Any], Any], *refused: type) -> Kind:
         except OverflowError:
             return f"out of range (allowed: {allowed} up to 1e308)"
         except UnicodeEncodeError:
-            return "text with half a character (allowed: Unicode)"
+            return "text with an unpaired surrogate (allowed: Unicode)"
         except Exception:  # an array, for example, has no truth value
             pass
         return f"a {type(value).__name__} (allowed: {allowed})"

@@ -22,7 +22,7 @@ def file_name(path: Any, what: str, allowed: str = "the name of a file") -> byte
     try:
         name = os.fsencode(path)
     except UnicodeEncodeError:
-        raise InputError(f"{what}: a file's name with half a character (allowed: Unicode)") from None
+        raise InputError(f"{what}: a file's name with an unpaired surrogate (allowed: Unicode)") from None
     if b"\0" in name:
         raise InputError(f"{what}: a file's name with a zero byte (allowed: any other)")
     return name
