@@ -18,9 +18,11 @@ namespace dlo::compare {
 /// which it is below a level.
 class LogProfile {
  public:
-  /// Evaluates the function at steps of a quarter of a decade from 0 to both sides, within `low`
-  /// and `high`. A side ends earlier if the function has risen for a decade to above a hundred
-  /// times its least value. Local minima of these values that are not above that are then refined.
+  /// Evaluates the function at multiples of a quarter of a decade, from 0 to both sides. The range
+  /// from `low` to `high` is rounded outwards to such multiples. A side ends earlier if the
+  /// function is above a hundred times its least value and has not decreased by more than 10 % per
+  /// step over the last decade. Local minima up to a hundred times the least value are then
+  /// refined.
   LogProfile(Function function, double low, double high);
 
   [[nodiscard]] const Minimum& minimum() const { return minimum_; }

@@ -74,7 +74,8 @@ class MotionMisfit {
   /// Returns simulated minus recorded coordinates [m]; the rod length if a simulation ends early.
   [[nodiscard]] Eigen::VectorXd residuals(const Eigen::VectorXd& parameters);
   /// Computes derivatives of the residuals by differences. @param here  residuals at the parameters
-  /// @param first  column from which derivatives are computed; those before are zero
+  /// @param first  index of the first physical parameter whose column is computed; the columns of
+  /// earlier physical parameters are zero, those of the modes of starts are always computed
   [[nodiscard]] Eigen::MatrixXd derivatives(const Eigen::VectorXd& parameters,
                                             const Eigen::VectorXd& here, Eigen::Index first = 0);
   /// Returns the prior inverse variances of the parameters: small for the physical ones, and for
@@ -120,8 +121,9 @@ class MotionMisfit {
 struct LeastSquares {
   Eigen::VectorXd parameters, residuals;
   Eigen::MatrixXd derivatives;
-  double variance = 0;     ///< estimated variance of a residual
-  bool converged = false;  ///< a further step would change the parameters by less than their errors
+  double variance = 0;  ///< estimated variance of a residual
+  /// Whether a further step would change the parameters by less than their errors.
+  bool converged = false;
 };
 
 /// Minimises the sum of squares by the Levenberg-Marquardt method. Derivatives are kept while steps

@@ -14,7 +14,7 @@ std::string verdict_of(const PageResult& result) {
   return result.text.substr(0, result.text.find('\n'));
 }
 
-/// Returns escape_markup() of each line, with line breaks unchanged.
+/// Returns escape_markup() of each line, each followed by a line break, also the last one.
 std::string escape_lines(const std::string& text) {
   std::string out;
   for (std::size_t at = 0; at < text.size();) {

@@ -12,9 +12,9 @@ namespace dlo::energy_model {
 namespace {
 
 /// Time in which twist follows the rotation of the ends, divided by the bending time m^(1/2) (l /
-/// EI)^(1/2) l. Torsional waves of a round rod cross it in about 2 d / l of that time. This value
-/// is smaller than for any real rod, so that twist is in equilibrium with an error of the order of
-/// its square.
+/// EI)^(1/2) l. A torsional wave crosses a round rod in about 0.4 d / l of that time. The
+/// constant is smaller than that if l < 4000 d. Twist is in equilibrium with an error of the order
+/// of the constant's square.
 constexpr double twist_relaxation_time = 1e-4;
 
 VectorMotion rotating_vector(const Eigen::Vector3d& director, const FrameSpins& spins) {

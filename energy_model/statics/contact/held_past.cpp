@@ -182,7 +182,10 @@ class PinnedSpans {
     if (!body.is_half_space()) bodies_.push_back(body);
   }
 
-  /// Adds a copy for each choice of sides.
+  /// Adds a copy of the span for each choice of the sides on which an interval passes the bodies.
+  /// Paths through an obstacle are omitted, and so are copies beyond most_spans.
+  /// @param row    one or two bodies, in any order
+  /// @param reach  the interval
   void add_spans_past(std::vector<const obstacle::Body*> row, const PathInterval& reach) {
     const auto distance = [&](const obstacle::Body* body) {
       return (body_middle(*body, reach.from) - reach.from).norm();

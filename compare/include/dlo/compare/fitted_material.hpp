@@ -171,8 +171,9 @@ struct Prediction {
   std::vector<double> shapes_m;  ///< distance of each shape from the best fit to the others
   double rms_m = 0;              ///< RMS over all points
   /// RMS distance of each shape from the mean of the others, measured as from a rod: no rod could
-  /// predict the shapes better. Empty if the scenes' grippers differ by more than 2 % of the
-  /// length.
+  /// predict the shapes better. Empty if the rods' lengths or the grippers' arc lengths differ, if
+  /// the grippers' positions differ by more than 2 % of the length or their directions by more than
+  /// 0.02, or if less than half of the longest shape is common to all.
   std::optional<double> repeatability_m;
 
   /// Returns the prediction error divided by the repeatability [-]; empty if the latter is unknown
