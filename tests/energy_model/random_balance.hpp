@@ -46,8 +46,9 @@ struct LargestImbalance {
   }
 };
 
-/// Returns a rod of random_problem(), of each kind by turns. One of two that are not curved has a
-/// line load that varies along it, three of ten in the plane have a couple across it.
+/// Returns a rod of random_problem(). Consecutive numbers cycle through the kinds. Half of the rods
+/// of kinds other than `curved` have a line load that varies along the rod. Three of ten planar
+/// rods have a couple about the plane's normal.
 inline energy_model::Problem loaded_problem(std::uint64_t number) {
   constexpr std::array kinds = {RandomSpace::plane,  RandomSpace::space, RandomSpace::twisted,
                                 RandomSpace::curved, RandomSpace::mixed, RandomSpace::strip};

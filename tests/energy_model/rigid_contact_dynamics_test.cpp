@@ -33,7 +33,8 @@ MovingRod cantilever_over(double gamma, const obstacle::Body& body) {
   return rod;
 }
 
-/// Arc lengths that are much closer than the points at which contact is checked.
+/// Arc lengths whose spacing is much smaller than that of the points at which the model evaluates
+/// contact.
 const std::vector<double> dense_arc_lengths = equal_arc_lengths(1, 4001);
 
 /// Checks what all motions satisfy: no penetration beyond `depth`, losses that grow, the energy

@@ -188,7 +188,7 @@ void expect_derivatives(SpanEnergy& model) {
   }
 }
 
-// Few unknowns, more and many take different products.
+// Small, medium and large numbers of unknowns use different implementations of matrix products.
 TEST_P(Objective, HasTheDerivativesOfItsValue) {
   for (const int terms : {3, 6, 12}) {
     if (test::sanitized && terms > 6) continue;

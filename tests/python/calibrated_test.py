@@ -79,7 +79,7 @@ def stiff():
 
 
 def test_a_fit_that_predicts_shapes_has_a_file_though_it_is_no_material(stiff):
-    """A stiff rod's natural curvature stands in for its weight, so its EI is open."""
+    """Natural curvature explains the shapes of a stiff rod as well as its weight does, so EI is not identified."""
     scene, shapes = stiff
     options = dict(natural_curvature=3, arc_lengths="file", options="given")
     alone = dlo.calibrate(scene, shapes, **options)
@@ -91,7 +91,7 @@ def test_a_fit_that_predicts_shapes_has_a_file_though_it_is_no_material(stiff):
 
 
 def test_the_calibrated_rod_is_turned_by_its_rotation(cable):
-    """A clamp held 20 degrees higher than said is that clamp."""
+    """The `rotation` in a calibrated file rotates the clamp of the scene."""
     text = MATERIAL.replace("4e9", "5e6").replace("2000", "1150")
     fit = dlo._documents.MaterialFit(None, text + '[[gripper]]\nnumber = 1\nrotation = [0, 0, "20 deg"]\n')
     raised = cable.copy()

@@ -179,9 +179,9 @@ TEST(ChainVerdict, AFileReadInAnotherUnitFailsWithTheUnitAsCause) {
   }
 }
 
-// A rod that leaves its plane rests on either side of it. A chain on one side is at no distance
-// from the rod on the other side that shorter segments would reduce. The bound of `plan` holds for
-// segments that a clamp holds in the middle.
+// A rod that buckles out of its plane has an equilibrium on either side of the plane. The distance
+// between a chain on one side and the rod on the other does not decrease with the length of the
+// segments. The bound of `plan` applies to chains whose clamps hold the middles of segments.
 TEST(ChainVerdict, AChainThatDoesNotConvergeToTheRodIsNone) {
   const Scene scene = clamped_arch(0.05);
   const energy_model::Equilibrium rod = solve_reference(scene, Model::energy);

@@ -55,7 +55,9 @@ struct Wire {
   std::vector<MeasuredShape> shapes;
 };
 
-/// @param points  of each shape
+/// Returns a wire with random properties and its measured shapes, drawn by a seed.
+/// @param count   number of shapes
+/// @param points  number of points of each shape
 inline Wire random_wire(unsigned seed, int count, int points = 50) {
   std::mt19937 random(seed);
   std::normal_distribution<double> normal;
