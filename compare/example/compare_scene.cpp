@@ -1,4 +1,5 @@
-// How far the force model is from the energy model on a scene file, and how soft it acts.
+// Prints the distance between the shapes of the force model and the energy model for a scene file,
+// and the effective modulus of the force model.
 
 #include <cstdio>
 #include <exception>

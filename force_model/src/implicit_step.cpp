@@ -30,10 +30,12 @@ constexpr double armijo_share = 0.05;
 /// Largest number of solves in the search for the points that touch walls. If the set is not found,
 /// the last one is used until the next step.
 constexpr int most_active_set_iterations = 30;
-/// Number of halvings of a movement before a larger shift is tried.
+/// Largest number of halvings of a Newton step in its line search. If all fail, the step is
+/// computed again with a larger shift of the stiffness matrix.
 constexpr int most_halvings = 6;
-/// Number of shifts that are tried. Each is shift_growth times the previous one, beginning with the
-/// stiffness of the slowest mode; 8^40 = 1e36 times that exceeds any segment's stiffness.
+/// Largest number of shifts of the stiffness matrix that are tried. Each is shift_growth times the
+/// previous one, beginning with the stiffness of the slowest mode; 8^40 = 1e36 times that exceeds
+/// any segment's stiffness.
 constexpr int most_shifts = 40;
 /// Factor by which the shift grows if it was too small, and decreases after each successful step.
 constexpr double shift_growth = 8;

@@ -74,8 +74,8 @@ struct ModeMeasurement {
 struct KernelChoice {
   BendingLaw law = BendingLaw::hooke;  ///< law of all joints
   int dimension = 3;                   ///< 2 (z stays 0) or 3
-  bool natural = false;  ///< joints have natural couples; law hooke and dimension 2 only
-  bool twisted = false;  ///< joints carry twist; law hooke, dimension 3, stride 1 only
+  bool natural = false;  ///< whether joints have natural couples; law hooke and dimension 2 only
+  bool twisted = false;  ///< whether joints carry twist; law hooke, dimension 3, stride 1 only
 };
 
 /// Functions of a step for one choice, stride and instruction set.

@@ -16,7 +16,8 @@ namespace dlo::cli {
 [[nodiscard]] std::string drawn_picture(const compare::Picture& picture,
                                         compare::PictureFormat format, const std::string& option);
 
-/// Draws each figure of a picture for a page; a figure that cannot be drawn has the reason instead.
+/// Draws each figure of a picture for a page. If a figure cannot be drawn, its `failure` states the
+/// reason.
 /// @param name  prefix of the pictures' identifiers, unique in the page
 [[nodiscard]] std::vector<compare::PagePicture> page_pictures(const compare::Picture& picture,
                                                               const std::string& name,

@@ -77,7 +77,7 @@ struct Chain {
   Vector origin{}, first_point{};  ///< where the rod begins, and the first hinge [m]
   std::vector<Quaternion>
       frames;  ///< of each segment, to start with: not bent, or a circle's arc between clamps
-  bool second_clamp = false;  ///< holds the last segment
+  bool second_clamp = false;  ///< whether a second clamp holds the last segment
   Vector end{},
       last_hinge{};  ///< of a rod with a second clamp: where it ends, and its last hinge [m]
 

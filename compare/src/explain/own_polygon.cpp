@@ -47,8 +47,8 @@ constexpr double least_identifying_distance = 1e-5;
 /// or torn one belongs to a polygon that is not the chain.
 constexpr double largest_chain_strain = 1e-3;
 
-/// Largest distance of a file's point from the arc length of the gripper that holds it, over the
-/// rod's length: the segments' strain moves it along the rod.
+/// Largest difference between the arc lengths of a gripper and of the file's point that it holds,
+/// divided by the rod's length. Axial strain of the segments causes such a difference.
 constexpr double same_arc_length = largest_chain_strain;
 
 /// Largest distance of a clamp from the middle of the segment that it holds, in half segments.
@@ -57,7 +57,7 @@ constexpr double middle_tolerance = 0.1;
 /// Position at which a gripper holds a chain.
 struct HoldLocation {
   Eigen::Index point = 0;  ///< index of the held point, or of the first point of the segment
-  bool segment = false;    ///< a clamp holds the middle of the segment after the point
+  bool segment = false;    ///< whether a clamp holds the middle of the segment after the point
 };
 
 /// Returns the position at which a gripper holds the chain; std::nullopt if it holds neither a

@@ -86,8 +86,9 @@ struct Panel {
   std::vector<PlottedCurve> curves;
   std::vector<Text> texts;
   std::optional<Cells> cells;
-  bool equal_aspect = false;  ///< the same number of pixels per metre on all axes
-  bool has_legend = true;     ///< false if another panel's legend contains the titles of its curves
+  bool equal_aspect = false;  ///< whether all axes have the same number of pixels per metre
+  bool has_legend = true;     ///< whether the panel has a legend; false if another panel's legend
+                              ///< contains the titles of its curves
 
   /// Whether the legend contains a curve.
   [[nodiscard]] bool shows_title(const PlottedCurve& curve) const {

@@ -10,7 +10,7 @@ struct ChildOutcome {
   double seconds = 0;  ///< wall time from start to end, accurate to 1 % [s]
   /// Clause that states why the program failed, without its own output; empty on success.
   std::string problem;
-  bool too_long = false;  ///< killed at the time limit
+  bool too_long = false;  ///< whether the program was killed at the time limit
   int exit_status = 0;    ///< exit status of the program; 0 too if a signal ended it
 };
 

@@ -58,7 +58,7 @@ struct SimulatorRun {
   RunStatus status = RunStatus::failed;  ///< how the run ended
   std::string problem;                   ///< one line; empty if there is a shape or a motion
   double seconds = 0;                    ///< wall time of the simulator [s]
-  bool too_long = false;                 ///< a program was killed at the time limit
+  bool too_long = false;                 ///< whether a program was killed at the time limit
   std::optional<MeasuredShape> shape;    ///< shape of a solved run of a scene at rest
   std::optional<MarkerMotion> motion;    ///< motion of a solved run of a scene that moves
   /// RMS distance from the reference, divided by the length, or for a motion by

@@ -95,7 +95,7 @@ Budget error_budget(const Scene& scene, const Solution& force, const Reference& 
   // The stretch of the reference itself is no error of the polygons.
   const double stiffer = reference_model(scene) == Model::exact ? 1 : 100;
   const double rigid = stiffer * scene.axial_stiffness();
-  // The chains model the scene as the force model does.
+  // The chains neglect the properties that the force model neglects.
   const Scene taken = without_neglected_properties(scene, own);
   const auto chain_in = [&](const Scene& other, BendingLaw law, Bookkeeping bookkeeping,
                             double c_c) {

@@ -52,7 +52,7 @@ std::vector<Vector3d> curve_vertices(const MjcfNode& node) {
   const auto counts = node.numbers("count", 1, 3);
   const double count = counts ? counts->front() : 0;
   if (!(count >= 3 && count <= most_vertices) || count != std::floor(count)) {
-    node.fail("count", fmt::format("(allowed: 3 to {} vertices, then 1 1)", most_vertices));
+    node.fail("count", fmt::format("(allowed: N 1 1 with N from 3 to {} vertices)", most_vertices));
   }
   for (std::size_t i = 1; i < counts->size(); ++i) {
     if ((*counts)[i] != 1) node.fail("count", "of more than one dimension (allowed: N 1 1)");

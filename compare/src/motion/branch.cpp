@@ -343,9 +343,10 @@ void Branch::advance_to_frame(Passage& passage) {
   }
 }
 
-/// Leaves the branch for the equilibrium that is found from its end: a small step away or, if none
-/// is found there, at the frame.
-/// @return the step [frames]
+/// Leaves the branch: finds an equilibrium beyond the branch's end, starting from its last shape.
+/// The equilibrium is searched `rejected` frames after the last shape or, if none is found there,
+/// at the frame.
+/// @return number of frames from the last shape to the equilibrium
 double Branch::leave_branch(double at, double rejected, Passage& passage) {
   if (passage.stayed_on_branch) {
     passage.stayed_on_branch = false;

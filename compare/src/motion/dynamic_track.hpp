@@ -29,7 +29,7 @@ struct DynamicFrame {
 /// Motion of a Track's rod with inertia.
 struct DynamicTrack {
   RodDamping damping;
-  bool in_motion = false;            ///< the rod has a velocity at the first frame
+  bool in_motion = false;            ///< whether the rod has a velocity at the first frame
   std::vector<DynamicFrame> frames;  ///< for the track's frames, up to the one at which it stopped
   std::optional<TrackStop> stopped;  ///< also set if the track itself ended early
   int terms = 0;                     ///< number of terms per interval and field

@@ -199,7 +199,8 @@ std::optional<MotionStart> smooth_start(const Scene& scene, const MarkerMotion& 
     const MarkerPosition& at = rows.positions[i];
     motion->add_point(*on_rod(at.arc_length, scene.length), at.time, at.position, 1);
   }
-  // Weight of a gripper relative to that of a marker, which then moves it by a thousandth only.
+  // Weight of a gripper's residual relative to that of a marker. The error of a marker then
+  // displaces the curve at a gripper by about a thousandth of the error.
   constexpr double grip_weight = 30;
   for (const double time : times) {
     const Scene now =

@@ -65,7 +65,7 @@ struct ModeOptions {
 struct SteppedMode {
   double omega = 0;        ///< [rad/s]; 0 if overdamped
   double damping = 1;      ///< damping ratio [-]; 1 if overdamped
-  bool is_stable = false;  ///< both |z| are at most 1
+  bool is_stable = false;  ///< whether both |z| are at most 1
 };
 
 /// Computes the motion of a mode. @param rate  steps per second

@@ -17,9 +17,9 @@ namespace dlo::compare {
 
 /// A contact that begins, ends or changes its kind from one frame to the next.
 struct ContactChange {
-  bool begins = true;              ///< contact begins, or a point contact becomes a line contact
+  bool begins = true;  ///< whether contact begins, or a point contact becomes a line contact
   energy_model::ContactPart part;  ///< the contact after the change; if it ends, before the change
-  bool contact_persists = false;   ///< the contact existed before, or continues to exist
+  bool contact_persists = false;   ///< whether the contact existed before, or continues to exist
 };
 
 /// Returns the changes from the contacts of one frame to those of the next. Contacts on one
@@ -46,7 +46,7 @@ struct TrackOptions {
 /// computation.
 struct TrackFrame : Solution {
   double time = 0;        ///< [s]
-  bool followed = false;  ///< the rod stayed on the branch of the frame before
+  bool followed = false;  ///< whether the rod stayed on the branch of the frame before
   double work = 0;        ///< work of grippers and obstacles on the rod, since the first frame [J]
   /// Work since the frame before minus the increase of the energy, in a frame in which the rod left
   /// its branch only of the jumps, and the bound of its error by forces between those before and

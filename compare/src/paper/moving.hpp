@@ -55,7 +55,7 @@ struct Choices<MovingVariant> {
 /// One row of Tables 2 to 4.
 struct MovingExperiment {
   Movement movement = Movement::rotation;  ///< movement of the gripper
-  bool horizontal = false;  ///< the rod is horizontal at the start; otherwise it hangs
+  bool horizontal = false;  ///< whether the rod is horizontal at the start; otherwise it hangs
   MovingVariant variant = MovingVariant::relative;  ///< step formula
 
   /// Whether all members are equal.

@@ -56,7 +56,7 @@ struct TableRow {
   std::string printed;      ///< digits as printed
   double computed = 0;      ///< value of the formula, in `unit`
   std::string explanation;  ///< formula and its inputs
-  bool agrees = false;      ///< `computed`, rounded to the printed digits, equals `printed`
+  bool agrees = false;      ///< whether `computed`, rounded to the printed digits, equals `printed`
 };
 
 /// Recomputes Tables 1 and 5 from the quantities from which, according to the paper, they follow.

@@ -98,7 +98,7 @@ void add_levels(Panel& panel, double rms_m, std::optional<double> allowed_m, dou
 struct SweptField {
   std::string column;               ///< name of its column in the table
   std::vector<std::string> values;  ///< values as the table spells them, in the sweep's order
-  bool logarithmic = false;         ///< the values are spaced logarithmically
+  bool logarithmic = false;         ///< whether the values are spaced logarithmically
 };
 
 /// Checks whether a picture can be drawn, before the sweep is computed.

@@ -17,7 +17,7 @@ struct RawShape {
   std::vector<std::array<double, 3>> d1;  ///< one per point, or none
   std::vector<double> arc_length;         ///< one per point, or none
   std::vector<long> lines;  ///< line of each point in the file; empty for formats without lines
-  bool in_metres = false;   ///< the file itself states that it is in metres
+  bool in_metres = false;   ///< whether the file itself states that it is in metres
   std::vector<std::string> notes = {};  ///< how columns of the file were interpreted, for the user
 };
 

@@ -38,7 +38,9 @@ Eigen::Matrix3Xd residuals_at_rest(const Scene& scene, const TrackOptions& optio
   return motion_residuals(recorded, model);
 }
 
-/// Returns the derivatives of all coordinates by a gripper's position, 3 positions x 3 [-].
+/// Returns the derivatives of the model's coordinates at all recorded positions by the position of
+/// a gripper, by differences [-]: three rows for each recorded position, three columns.
+/// @param here  residuals at the scene's position of the gripper
 Eigen::MatrixX3d sensitivity(const Scene& scene, const TrackOptions& options,
                              const MarkerMotion& recorded, std::size_t gripper,
                              const Eigen::Matrix3Xd& here) {

@@ -20,7 +20,7 @@ struct StretchedRod {
   Scene scene;  ///< scene that was solved: Stretch::none or Stretch::counted
   energy_model::Equilibrium rod;
   StretchEffect effect;  ///< effect on the shape without stretch; NaN if the scene counts stretch
-  bool neglects_stretch = false;  ///< stretch is not modelled although it matters
+  bool neglects_stretch = false;  ///< whether stretch is not modelled although it matters
   StretchDecision decision = StretchDecision::given;
 };
 

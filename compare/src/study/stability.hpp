@@ -33,8 +33,8 @@ struct Choices<Outcome> {
 
 /// Data by which the end of a simulation is classified.
 struct SimulationEnd {
-  bool finite = false;   ///< no step has diverged
-  bool at_rest = false;  ///< proved, see force_model::Simulation::relax
+  bool finite = false;   ///< whether no step has diverged
+  bool at_rest = false;  ///< whether rest is proved, see force_model::Simulation::relax
   /// Shapes at equal intervals over the last half of the steps, the final one last [m], 3 x N each.
   /// The final shape alone suffices if it is at rest.
   std::vector<Eigen::Matrix3Xd> late_shapes;
@@ -85,7 +85,7 @@ struct StabilityResult {
   /// Largest distance of a point from the reference, or from the other equilibrium that `note`
   /// names, divided by the length [-]; NaN if refused, infinite if not finite.
   double error_over_length = 0;
-  bool at_rest = false;  ///< proved by the stepper's own rest criterion
+  bool at_rest = false;  ///< whether rest is proved by the stepper's own rest criterion
   std::string note;      ///< additional facts, such as another equilibrium; may be empty
 };
 

@@ -40,7 +40,7 @@ struct Answer {
   AnswerBounds bounds;         ///< differences between both solutions
   /// Other equilibria that a search has found, in the order of energy.
   std::vector<OtherEquilibrium> others;
-  bool is_lowest = true;  ///< no other stable equilibrium was found with less energy
+  bool is_lowest = true;  ///< whether no other stable equilibrium was found with less energy
 };
 
 /// Number of points of an answer, at equal arc lengths.

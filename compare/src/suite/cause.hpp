@@ -19,7 +19,7 @@ struct Cause {
   std::string name;    ///< name, equal for all scenes, such as "first element welded"
   double factor = 0;   ///< magnitude of the cause; NaN if it has none
   std::string words;   ///< clause with numbers
-  bool defect = true;  ///< true if the shapes do not converge to the rod because of it
+  bool defect = true;  ///< whether the shapes do not converge to the rod because of the cause
 };
 
 /// Shape of a scene by a simulator, with N points.

@@ -23,7 +23,8 @@ namespace {
 /// that fits best without the other numbers may differ from the one with them.
 constexpr double distant_log_modulus = 0.7;
 
-/// Rods and own numbers of each shape that are nearest to its points among several trials.
+/// Start of a fit, combined from several trials. For each shape it has the rod, and the numbers
+/// that belong to this shape alone, of the trial that is nearest to the shape's points.
 struct NearestStart {
   std::vector<double> sum_of_squares;
   FittedRods::Rods rods;

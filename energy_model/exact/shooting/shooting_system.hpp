@@ -130,7 +130,8 @@ class ShootingSystem {
   void node_equations(const ShootingPoint& point, Eigen::Index i, const RodState& before,
                       std::vector<Block> by_before, Rows& rows) const;
 
-  /// Adds continuity of positions and frames at the end of interval i, and the conditions there.
+  /// Adds continuity of positions and frames at the end of interval i, and the conditions at the
+  /// node there. @return false if the integration of the interval fails
   [[nodiscard]] bool interval_equations(const ShootingPoint& point, Eigen::Index i,
                                         Rows& rows) const;
 

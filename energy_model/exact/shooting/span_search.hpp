@@ -14,7 +14,7 @@ namespace dlo::energy_model {
 /// Result of a search for equilibria of a span.
 struct SpanSearchResult {
   std::vector<SpanEquilibrium> found;  ///< stable ones first, by energy; never empty
-  bool complete = true;                ///< false: the deadline ended the search early
+  bool complete = true;                ///< whether the search ended before its deadline
   std::string not_searched;            ///< description of an omitted part; empty: none
 };
 

@@ -154,7 +154,8 @@ class ClosedRod {
     return begin.value + begin_slope * std::clamp(x, 0.0, part.width);
   }
 
-  /// Returns cross-sections of an interval; those at its ends are limits from within it.
+  /// Returns the states at equally spaced arc lengths of interval i, both ends included. Where the
+  /// rod's state jumps at an end of the interval, the limit from within the interval is returned.
   [[nodiscard]] std::vector<RodState> along(Eigen::Index i) const {
     std::vector<RodState> states = {closed_.nodes[static_cast<std::size_t>(i)]};
     const double width = (closed_.s[i + 1] - closed_.s[i]) / samples;

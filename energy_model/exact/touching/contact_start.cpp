@@ -132,8 +132,9 @@ class Layout {
     return (sample.points.col(0) - problem_.grips.front().position) / l_;
   }
 
-  /// Sets n of parts that lie. At the begin its component across the surface follows from the lying
-  /// conditions; from there on the pressure of the surface is integrated.
+  /// Sets the force n in the states of parts that lie on a surface. At the begin of a part the
+  /// component of n normal to the surface follows from the lying conditions. From there on n
+  /// follows by integration of the pressure of the surface.
   [[nodiscard]] bool set_lying_forces(double tolerance) {
     for (const PlacedContact& contact : start_.contacts) {
       for (Eigen::Index i = contact.begin; i < contact.end; ++i) {

@@ -46,7 +46,9 @@ struct ContactPoint {
   double by_depth = 0;                                 ///< derivative of the push by the depth
   double by_rate = 0;  ///< derivative of the push by the depth's rate
 
-  /// Sets the members up to `depth`.
+  /// Computes obstacle, position, normal, velocity and depth of a point; the other members keep
+  /// their default values.
+  /// @param where  the point
   ContactPoint(const Span::Obstacle& of, const ObstaclePose& place, const Eigen::Vector3d& where);
   [[nodiscard]] Eigen::Vector3d force() const { return push * normal; }
 };

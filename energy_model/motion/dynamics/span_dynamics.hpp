@@ -24,7 +24,7 @@ struct VectorMotion {
 /// A direction that rotates with the clamp at the end, and the director that stays normal to it.
 struct AcrossDirector {
   VectorMotion direction;
-  bool of_d1 = false;  ///< the director is d1 instead of the tangent
+  bool of_d1 = false;  ///< whether the director is d1 instead of the tangent
 };
 
 /// Motion that grips and obstacles prescribe for a span at one time. Own units; components along

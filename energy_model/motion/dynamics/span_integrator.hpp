@@ -48,7 +48,8 @@ struct SpanInstant {
 struct IntegratorOptions {
   double tolerance = 1e-7;  ///< tolerance of a step, as DynamicsOptions::tolerance
   double step = 0;          ///< fixed step; 0: adapted to the tolerance
-  bool damped = false;      ///< damps fast decaying components (Radau IIA instead of Gauss)
+  /// Whether the rule damps fast decaying components (Radau IIA instead of Gauss).
+  bool damped = false;
 };
 
 /// Integrates by collocation with four stages (Gauss's rule, or Radau's if damped)
@@ -73,8 +74,8 @@ class SpanIntegrator {
   [[nodiscard]] std::string advance(SpanInstant& at, double until,
                                     const std::function<bool()>& expired);
 
-  /// Whether two times differ only by rounding. The motion is then evaluated before or after both,
-  /// as a break may lie between them.
+  /// Whether two times differ only by rounding. The motion is then evaluated on one side of both
+  /// times, because a break of the motion may lie between them.
   [[nodiscard]] static bool same_instant(double a, double b);
 
   /// Sets SpanDynamics to an instant with consistent accelerations. @return the grips' multipliers

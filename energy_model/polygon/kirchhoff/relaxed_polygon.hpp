@@ -51,7 +51,7 @@ struct RelaxedPolygon {
 /// Local minima that polygon_minima() has found, lowest first.
 struct PolygonMinima {
   std::vector<RelaxedPolygon> found;
-  bool complete = true;  ///< false if the deadline ended the search early
+  bool complete = true;  ///< whether the search ended before its deadline
 };
 
 /// Finds local minima of the polygon's energy from all of polygon_starts(), in the span's plane, if

@@ -6,7 +6,8 @@
 namespace dlo::energy_model {
 namespace {
 
-/// Slack, divided by its length, above which a segment is not stretched but hangs or arches.
+/// Slack of a segment, divided by its length, from which the segment is treated as hanging or
+/// arched, without tension.
 constexpr double largest_slack = 0.05;
 
 /// Largest tension in the search [EI/l^2]; no rod is pulled harder without being stretched to its

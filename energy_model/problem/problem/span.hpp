@@ -65,7 +65,7 @@ struct Span {
   /// Rotation between the frames that clamps at both ends hold; whole turns are in SpanEnergy's
   /// unknowns.
   struct Twist {
-    /// Mean GJ over EI: torsional stiffness of the span times its length.
+    /// Harmonic mean of GJ along the span, divided by EI [-].
     double stiffness = 0;
     /// d1 that the end holds, if d1 at the start is d1().
     Eigen::Vector3d end_d1 = Eigen::Vector3d::UnitX();

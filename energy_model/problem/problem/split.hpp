@@ -14,7 +14,7 @@ namespace dlo::energy_model {
 
 /// Frames that the clamps at both ends of a span hold, in the span's frame.
 struct HeldFrames {
-  double stiffness = 0;              ///< mean GJ, divided by EI
+  double stiffness = 0;              ///< harmonic mean of GJ, divided by EI
   Eigen::Vector3d start_d1, end_d1;  ///< first directors without roll
   HeldTurns turns;
 };

@@ -129,7 +129,7 @@ class PolygonFields {
   bool reversed_;
   Eigen::Matrix3d frame_;
   std::optional<RodSpan> span_;
-  double longest_ = 0;  // longest interval of the mesh
+  double longest_ = 0;  // length of the longest interval of the mesh
   std::vector<RelaxedPolygon> minima_;
 };
 

@@ -22,10 +22,10 @@ struct SpanTraits {
 
   double load;  ///< weight and loads [EI/l^2]
   int fields;
-  bool adapted;  ///< the mesh is adapted to a known shape
+  bool adapted;  ///< whether the mesh is adapted to a known shape
   double longest_element = 0;
   int natural_terms = 0;  ///< number of coefficients needed for natural strains and couples
-  bool taut = false;      ///< elements end where layers at taut segments' ends have decayed
+  bool taut = false;      ///< whether elements end where layers at taut segments' ends have decayed
   double stiffness = 0;   ///< largest stiffness of a taut segment along its chord [EI/l^3]
 };
 

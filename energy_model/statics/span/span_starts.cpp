@@ -39,7 +39,8 @@ Eigen::Vector3d pendulum(const Span& span, const Eigen::Vector3d& from,
   if (!(size > 0)) return from;
   const Eigen::Vector3d axis = force / size;
   Eigen::Vector3d side = from - from.dot(axis) * axis;
-  // Opposite to the force both ways are equally long; in a plane the rod falls towards its +y.
+  // If the tangent is opposite to the force, both senses of rotation have the same angle. In a
+  // plane the rod then bends to the left of the tangent.
   if (side.norm() < 1e-9) side = -across(span, axis);
   side.normalize();
   const double turn = std::atan2(from.dot(side), from.dot(axis)) - 2 * pi * turns;

@@ -25,9 +25,10 @@ struct [[nodiscard]] SpanSolution {
   double eigenvalue_nearest_zero = std::numeric_limits<double>::quiet_NaN();
   /// Estimated distance of the shape from an equilibrium, divided by the length; NaN: unknown.
   double error = std::numeric_limits<double>::quiet_NaN();
-  double energy = 0;      ///< energy of the shape [EI/l]
-  bool resolved = false;  ///< more terms would not change the shape, or the caller chose them
-  bool followed = false;  ///< found near the known shape by Newton's method alone
+  double energy = 0;  ///< energy of the shape [EI/l]
+  /// Whether more terms would not change the shape, or the caller chose their number.
+  bool resolved = false;
+  bool followed = false;  ///< whether it was found near the known shape by Newton's method alone
   /// Smallest eigenvalue of the reduced Hessian, including directions out of the plane; NaN: not
   /// computed.
   double smallest_eigenvalue = std::numeric_limits<double>::quiet_NaN();

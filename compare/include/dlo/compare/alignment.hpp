@@ -94,7 +94,8 @@ struct Alignment {
   /// Whether the file's points, or with ArcLengths::file its arc lengths, run from the rod's arc
   /// length l to 0.
   bool reversed = false;
-  /// Rule that was used; `nearest` may become `chord` for a whole file whose frame is fitted.
+  /// Rule that was used for arc lengths. `chord` may replace `nearest` if the frame of a file of
+  /// the whole rod is fitted and points are weighted by length.
   ArcLengths arc_lengths = ArcLengths::nearest;
   Shape shape;                          ///< points in the scene's frame, by increasing arc length
   double rms_m = 0;                     ///< RMS distance with the given weights

@@ -27,7 +27,8 @@ struct Deviation {
   /// without a straight rod.
   double rms_over_movement = 0;
   double angle_rms_rad = 0;  ///< RMS angle between each segment and the tangent at its middle
-  /// RMS difference between turning angle per segment length and the curvature.
+  /// RMS difference between the shape's curvature vector at its inner points (rotation angle of the
+  /// tangent per segment length) and the reference's.
   double curvature_rms_per_m = 0;
 };
 

@@ -58,9 +58,9 @@ enum class Integration {
 /// uses.
 struct StepPolicy {
   StepLimit limit = StepLimit::none;  ///< movement of a step that is limited to l_s
-  bool momentum = false;              ///< adds c_h times the last movement
-  bool damping = false;               ///< divides by c_s once points oscillate
-  bool automatic = false;             ///< overwrites c_F and c_h
+  bool momentum = false;              ///< whether a step adds c_h times the last movement
+  bool damping = false;               ///< whether a step divides by c_s once points oscillate
+  bool automatic = false;             ///< whether the policy overwrites c_F and c_h
   /// Values other than along_force ignore the policies above.
   Integration integration = Integration::along_force;
 
@@ -103,8 +103,9 @@ enum class StepStatus {
 struct StepResult {
   StepStatus status = StepStatus::diverged;  ///< how it ended
   double c_m = 0;                            ///< scaling of this step (Formulas 17, 18, 20) [-]
-  double movement = 0;   ///< d_m: largest movement, which is compared with l_s [m]
-  bool limited = false;  ///< d_m was larger than l_s; implicit steps: dP was shortened
+  double movement = 0;  ///< d_m: largest movement, which is compared with l_s [m]
+  /// Whether d_m was larger than l_s or, in an implicit step, dP was shortened.
+  bool limited = false;
 };
 
 }  // namespace dlo::force_model

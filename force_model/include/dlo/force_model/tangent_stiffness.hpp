@@ -23,8 +23,8 @@ struct StiffnessMatrix {
 
 /// Distance of a shape from equilibrium, and its stability, from the tangent stiffness.
 struct [[nodiscard]] EquilibriumCheck {
-  /// The stiffness of the free points is positive definite by more than rounding, except for
-  /// `neutral_modes`.
+  /// Whether the stiffness of the free points is positive definite by more than rounding, except
+  /// for `neutral_modes`.
   bool stable = false;
   /// Number of modes without stiffness, such as one of a rod between two pins, which can rotate
   /// about the line through them; 3: three or more. If a force acts along one, `stable` is false.
