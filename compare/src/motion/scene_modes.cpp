@@ -85,7 +85,7 @@ void add_polygon(const Scene& scene, const ModeOptions& options, SceneModes& res
     return;
   }
   if (result.tension.value_or(0) != 0) {
-    result.missing_polygon_reason = "its points are at rest without the rod's tension";
+    result.missing_polygon_reason = "a polygon at rest does not have the tension of the taut rod";
     return;
   }
   const MovingPolygon polygon = polygon_at_rest(scene, options.solve);
