@@ -157,7 +157,7 @@ double distance_from(const MeasuredShape& file, const Equilibrium& rod, double l
   return std::max(nearest(line, curve), nearest(curve, line));
 }
 
-/// A file of one class.
+/// A shape file with its class (see the head of this file) and the expected result.
 struct Trial {
   char letter;
   std::string what;

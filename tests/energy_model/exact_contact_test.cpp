@@ -266,8 +266,8 @@ TEST(ExactContact, NoRodEntersASmallBall) {
   }
 }
 
-// From a shape that touches, on what has been moved away: with its contact there is an equilibrium,
-// which no obstacle can hold.
+// The initial guess touches an obstacle that is then moved away. If the contact is kept, the
+// equations have a solution with a tensile contact force, which an obstacle cannot exert.
 TEST(ExactContact, NoObstacleIsConfirmedToPull) {
   const auto over = [](bool peg, double height) {
     Problem problem = heavy_cantilever(0.3, 0);

@@ -98,9 +98,9 @@ inline bool add_penetrated_body(std::mt19937& random, bool space, energy_model::
   return false;
 }
 
-/// Returns a rod that is clamped at its begin and in one of two cases held at its end, with a
-/// cylinder, a ball or a capsule that its shape without it would penetrate, drawn by a seed;
-/// std::nullopt if no such body is found.
+/// Returns a rod with a cylinder, a ball or a capsule, drawn by a seed. The rod is clamped at its
+/// begin, and in half of the cases also held at its end. Without the body the rod's shape would
+/// penetrate it. Returns std::nullopt if no such body is found.
 inline std::optional<energy_model::Problem> random_problem_with_body(unsigned seed, bool space) {
   std::mt19937 random(seed + 977 * static_cast<unsigned>(space));
   const auto uniform = [&random](double low, double high) {
@@ -149,9 +149,9 @@ inline bool add_penetrated_half_space(std::mt19937& random, bool space,
   return true;
 }
 
-/// Returns a rod between clamps that hold its frame, the last one rotated by up to one turn either
-/// way, with a half-space or a body that its shape without it would penetrate, drawn by a seed;
-/// std::nullopt if none is found.
+/// Returns a rod with a half-space or a body, drawn by a seed. The rod is between clamps that hold
+/// its frame, and the last clamp is rotated by up to one turn in either sense. Without the obstacle
+/// the rod's shape would penetrate it. Returns std::nullopt if no such obstacle is found.
 inline std::optional<energy_model::Problem> random_framed_problem(unsigned seed, bool space) {
   std::mt19937 random(seed + 1009 * static_cast<unsigned>(space));
   const auto uniform = [&random](double low, double high) {

@@ -156,7 +156,7 @@ TEST(RigidContactDynamics, NoPegAndNoEdgeComesBetweenThePointsOfContact) {
   }
 }
 
-// A floor that comes slowly does the work that the energy at rest grows by.
+// The work of a floor that rises slowly equals the increase of the energy of the rod at rest.
 TEST(RigidContactDynamics, AFloorThatRisesDoesWork) {
   MovingRod rod = cantilever_over(10, low_floor);
   rod.material_damping = 0.05;

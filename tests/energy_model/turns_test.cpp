@@ -264,7 +264,8 @@ TEST(Turns, OfAHelixChangeByOneWithTheClamps) {
   }
 }
 
-/// A roll counts from the rod without it: a loop that leaves its plane a little stays a loop.
+/// The turns are counted from the rod without roll. A loop that leaves its plane by a small
+/// distance therefore has the turns of the planar loop.
 TEST(Turns, OfACurvedRodThatIsRolledAreThoseOfItsPlanarLoop) {
   Problem problem = rolled({0.1, 0.05, 0}, {1, 0.3, 0}, 0);
   problem.grips[0].frame->d1 = Vector3d::UnitY();

@@ -50,7 +50,7 @@ TEST(Simulation, StepsDoNotAllocate) {
     EXPECT_EQ(allocations, before) << "stepper " << static_cast<int>(stepper);
     EXPECT_EQ(simulation.steps(), 100);
   }
-  // The counter counts.
+  // The counter detects an allocation.
   const long before = allocations;
   const Eigen::VectorXd vector = Eigen::VectorXd::Zero(steel.points);
   EXPECT_EQ(vector.size(), steel.points);

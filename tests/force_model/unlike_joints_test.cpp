@@ -75,7 +75,8 @@ TEST(NaturalTurns, AreThoseOfTheStressFreeShapeWithoutForceAndEnergy) {
   const Eigen::Matrix3Xd points = turned_polygon(rest, bending.natural_turns);
   Eigen::Matrix3Xd forces = Eigen::Matrix3Xd::Zero(3, n + 1);
   add_bending_forces(points, rest, bending, forces);
-  // Rounding of the couples that cancel, over the segments on which they bear.
+  // The forces are the rounding error of couples that cancel: eps times the largest couple, divided
+  // by the length of the shortest segment.
   double couple = 0;
   for (Eigen::Index i = 1; i < n; ++i) {
     const double L = (rest[i - 1] + rest[i]) / 2;

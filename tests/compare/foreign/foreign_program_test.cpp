@@ -22,7 +22,8 @@ using testing::StartsWith;
 
 Scene soft_cable() { return load_scene(std::string(DLO_DATA) + "/scenes/cable.toml"); }
 
-/// A line of sh, in which $0 is the scene, $1 N and $2 the shape.
+/// Runs a line of sh as the simulator. In the line $0 is the scene file, $1 is "N=" with the number
+/// of points, and $2 is the shape file.
 SimulatorRun run_shell(const std::string& line, double time_limit = 20) {
   return run_foreign({"sh", {"sh", "-c", line, "{scene}", "N={points}", "{shape}"}}, soft_cable(),
                      24, time_limit);

@@ -146,8 +146,8 @@ Solution solve_with(Scene scene, Stretch stretch, Model model) {
 TEST(AutomaticStretch, IsThatOfAMooringLineWhichItMoves) {
   const Scene scene = line(4e5, 98, 200);
   const Solution decided = solve_with(scene, Stretch::automatic, Model::exact);
-  // The displacement by which the decision was made is that estimated from the shape without
-  // stretch.
+  // The decision is based on the displacement that is estimated from the shape without stretch. The
+  // result contains this displacement.
   EXPECT_EQ(decided.stretch.displacement_m,
             solve_with(scene, Stretch::none, Model::exact).stretch.displacement_m);
   EXPECT_GT(decided.stretch.displacement_m, 1e-3 * scene.length);
