@@ -116,7 +116,8 @@ Eigen::Matrix3Xd RestSearch::check_rest(const MovingShape& shape) {
   // measured mode is used only if it is proven or if the rod seemed to be at rest. If the rod
   // seemed so wrongly, this mode is better than the estimate that caused it.
   if (check.stable && (check.proven || seems_at_rest)) slowest_mode_ = check.slowest_mode;
-  // Without a proof, as with a contact that opens and closes, the motion is damped all the same.
+  // With obstacles the motion is also damped farther from rest, because a contact that opens and
+  // closes prevents a proof of rest.
   const double nearly = rod_.has_obstacles() ? 100 : 1;
   // The steps of a descent have no momentum. A shape that only creeps in such steps needs momentum,
   // so no further descent follows one that did not halve the distance from rest.

@@ -41,8 +41,9 @@ void stop_calls_at_exit(py::module_& module);
 /// thread and would deadlock: it is refused.
 class CallMutex {
  public:
-  /// @throws std::runtime_error if this thread owns the mutex
+  /// Locks the mutex. @throws std::runtime_error if this thread owns the mutex
   void lock();
+  /// Locks the mutex if it is free. @return whether it was free
   /// @throws std::runtime_error if this thread owns the mutex
   [[nodiscard]] bool try_lock();
   void unlock();

@@ -333,7 +333,7 @@ std::vector<SceneCause> scene_causes(const Scene& scene, const Shape& shape,
   if (clamps > 0 && has_defined_roll && !scene.prescribes_twist()) {
     causes.push_back(natural_curvature(scene));
   }
-  // A different length is visible in the points.
+  // Another length is a possible cause only if the length of the points differs by at least this.
   constexpr double noticeable = 0.005;
   const double longer = std::abs(std::log(estimated_shape_length / scene.length));
   if (longer > noticeable && longer < 1) causes.push_back(length(scene, estimated_shape_length));

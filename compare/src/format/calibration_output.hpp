@@ -36,7 +36,7 @@ struct ShownValue {
 /// Returns "95 %: 1.2 to 1.3"; an open end is "...".
 [[nodiscard]] std::string interval_text(const compare::FittedValue& value);
 
-/// Returns options as on the command line.
+/// Returns the options of an alternative fit, as they are given on the command line.
 [[nodiscard]] std::string option_words(const compare::FitAlternative& alternative);
 
 /// Returns the joints of the chains that come nearest to a rod.

@@ -202,7 +202,8 @@ bool passes_through(const SolvedInstant& before, const SolvedInstant& after,
     const obstacle::Body& body = before.scene.obstacles[i].body;
     const double radius = inner_radius(body);
     if (!std::isfinite(radius)) return false;
-    // The chords of a rod that lies or slides on the obstacle are not as deep as this.
+    // Depth, divided by the radius, that the chords of a rod that lies or slides on the obstacle do
+    // not reach.
     constexpr double share = 0.25;
     constexpr double most_points = 513;
     const double length = before.scene.length;

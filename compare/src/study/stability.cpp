@@ -23,7 +23,7 @@ namespace {
 // Shapes sampled during a run, and number of consecutive steps sampled at its end.
 constexpr int samples = 64;
 constexpr double rest_displacement = 1e-6;  // allowed movement of a rod at rest, in lengths
-// Allowed growth of its energy, divided by the energy: rounding only.
+// Allowed increase of the energy of a rod at rest, divided by the energy: rounding only.
 constexpr double rest_energy_growth = 1e-12;
 
 force_model::StepOptions options_for(const HardCase& hard, Stepper stepper) {
@@ -139,7 +139,7 @@ StabilityResult run_with_reference(const energy_model::PolygonResult& reference,
     if (result.outcome == Outcome::pass && !(share <= rest_energy_growth))
       result.outcome = Outcome::wrong;
   } else if (result.outcome == Outcome::wrong) {
-    result.note = trajectory.at_rest ? "at rest elsewhere" : "still creeping";
+    result.note = trajectory.at_rest ? "at rest in another shape" : "still creeping";
     try_other_equilibrium(rod, trajectory, reference.energy, tolerance, result);
   }
   return result;

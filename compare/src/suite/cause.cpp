@@ -338,7 +338,7 @@ Cause cause_of_factors(const Scene& scene, const StiffnessFactor& coarse,
     return {"springs with 1/h^2", fine.factor,
             both + ": it is divided by the element's length twice"};
   }
-  // Below it the rod is a rope, and how far below does not show.
+  // Factors of EI below this one give the same shapes, because the rod then acts as a rope.
   constexpr double negligible_factor = 1e-3;
   if (coarse.factor < negligible_factor && fine.factor < negligible_factor) {
     return {

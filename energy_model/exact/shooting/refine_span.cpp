@@ -13,7 +13,7 @@ namespace dlo::energy_model {
 namespace {
 
 constexpr double largest_force = 1e6;  // largest force over b that the first mesh resolves
-// Largest component across the plane of tangents of a planar shape.
+// Component of the tangents normal to the plane up to which a shape is treated as planar.
 constexpr double start_plane_tolerance = 1e-6;
 // Difference of equal arc lengths [l].
 constexpr double same_arc_length = 1e-9;

@@ -105,7 +105,7 @@ class PolygonDescent {
   }
 
  private:
-  // Shares of the largest diagonal element.
+  // First and largest damping, divided by the largest diagonal element of the Hessian.
   static constexpr double first_damping = 1e-12;
   static constexpr double most_damping = 1e3;
 

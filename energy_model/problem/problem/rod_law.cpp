@@ -77,7 +77,7 @@ bool loads_leave_plane(const Problem& problem, const Eigen::Vector3d& normal) {
          });
 }
 
-// Arc lengths nearer to each other are equal, in rod lengths.
+// Difference of arc lengths, divided by the rod length, below which they are treated as equal.
 constexpr double same_arc_length_share = 1e-9;
 
 }  // namespace

@@ -82,7 +82,7 @@ std::vector<SpanSolution> as_list(SpanSolution solution) {
 bool is_same_shape(const SpanSolution& a, const SpanSolution& b, double tolerance) {
   const Span& span = a.model->span();
   if (std::abs(a.energy - b.energy) > 1e-2 * tolerance * (1 + span.total_load())) return false;
-  // Without softer parts, points differ by less than strains.
+  // If the span has no parts of smaller stiffness, points differ by less than the strains.
   if (a.model->size() == b.model->size() && a.terms == b.terms && span.parts.empty() &&
       span.planar == b.model->span().planar && span.cuts == b.model->span().cuts &&
       (a.x - b.x).norm() < tolerance * span.length) {
