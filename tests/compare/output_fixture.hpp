@@ -13,7 +13,7 @@ namespace dlo::test {
 /// Fixture that runs lines of bash in a private folder, for tests of the command's output.
 class Output : public Command {
  protected:
-  /// Runs a line of bash, possibly with several commands; its standard error is theirs.
+  /// Runs a line of bash. If it has several commands, the standard error contains that of all.
   [[nodiscard]] Outcome bash(const std::string& script) const {
     std::ofstream(path("script")) << "cd " << path("") << "\ndlo=" << DLO_COMMAND << "\n"
                                   << script << "\n";

@@ -1,4 +1,4 @@
-// Rods on rigid obstacles.
+// Tests of rods on rigid obstacles.
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-// Contact by two methods that share no solver.
+// Tests of contact by two methods that share no solver.
 
 #include <gtest/gtest.h>
 

@@ -1,5 +1,5 @@
-// Multiple shooting (any clamps and pins, in the plane and in space) against reference values, the
-// scan of one clamp, the minimiser, and the rod's own integrals.
+// Tests of multiple shooting (any clamps and pins, in the plane and in space) against reference
+// values, the scan of one clamp, the minimiser, and the rod's own integrals.
 
 #include <gtest/gtest.h>
 

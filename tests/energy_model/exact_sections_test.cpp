@@ -1,5 +1,5 @@
-// Rods of several sections by multiple shooting, against a stepped column's buckling load and two
-// springs in series.
+// Tests of rods of several sections by multiple shooting, against a stepped column's buckling load
+// and two springs in series.
 
 #include <gtest/gtest.h>
 

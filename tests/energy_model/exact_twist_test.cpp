@@ -1,5 +1,5 @@
-// The exact solver with twist: closed forms of shapes and of where they buckle, balances, and the
-// frames that clamps hold.
+// Tests of the exact solver with twist: closed forms of shapes and of their buckling, balances, and
+// the frames that clamps hold.
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,5 @@
-// The example of a constraint in energy_model/doc/extend.md: the rod's end slides along a line.
+// Tests of the example of a constraint in energy_model/doc/extend.md: the rod's end slides along a
+// line.
 
 #include <gtest/gtest.h>
 

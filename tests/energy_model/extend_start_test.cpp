@@ -1,4 +1,5 @@
-// The example of a start of the search in energy_model/doc/extend.md: a helix between two clamps.
+// Tests of the example of a start of the search in energy_model/doc/extend.md: a helix between two
+// clamps.
 
 #include <gtest/gtest.h>
 

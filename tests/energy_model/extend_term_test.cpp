@@ -1,4 +1,5 @@
-// The example of a term in energy_model/doc/extend.md: a spring from the rod's end to a point.
+// Tests of the example of a term in energy_model/doc/extend.md: a spring from the rod's end to a
+// point.
 
 #include <gtest/gtest.h>
 

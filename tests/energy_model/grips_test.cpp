@@ -1,4 +1,4 @@
-// Rods with several grips, in the plane and in space, and on obstacles.
+// Tests of rods with several grips, in the plane and in space, and on obstacles.
 
 #include <gtest/gtest.h>
 

@@ -1,5 +1,5 @@
-// Rods of sections and rods that are not intrinsically straight: against closed forms, references
-// and Kirchhoff's equations, integrated from a solution's own reactions.
+// Tests of rods of sections and of rods that are not intrinsically straight: against closed forms,
+// references and Kirchhoff's equations, integrated from a solution's own reactions.
 
 #include <gtest/gtest.h>
 

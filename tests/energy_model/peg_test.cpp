@@ -1,4 +1,4 @@
-// Rods on pegs, balls and tables with edges.
+// Tests of rods on pegs, balls and tables with edges.
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-// Polygons between segments that hold the rod's frame.
+// Tests of the twist of polygons between segments that hold the rod's frame.
 
 #include <gtest/gtest.h>
 
@@ -137,7 +137,7 @@ TEST(PolygonTwist, GradientAndHessianAreDifferences) {
   }
 }
 
-/// The twisted polygon of `points` and how far it is from the rod [l], with the twist.
+/// Equilibrium of a twisted polygon, and its RMS distance from the twisted rod [l].
 struct TwistedPolygon {
   PolygonResult result;
   double rms = 0;

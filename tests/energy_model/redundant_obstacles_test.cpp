@@ -1,4 +1,4 @@
-// Rods on rigid obstacles of which one lies within another, flush with it or not.
+// Tests of rods on two rigid obstacles, one within the other, with flush or separate surfaces.
 
 #include <gtest/gtest.h>
 

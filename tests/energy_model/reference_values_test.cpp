@@ -1,4 +1,5 @@
-// Both solvers against numbers that were made elsewhere: see data/reference/reference_values.json.
+// Tests of both solvers against published or independent numbers: see
+// data/reference/reference_values.json.
 
 #include <gsl/gsl_sf_airy.h>
 #include <gtest/gtest.h>

@@ -1,4 +1,4 @@
-// Polygons of a round rod's tangents, from which multiple shooting starts.
+// Tests of the polygons of a round rod's tangents from which multiple shooting starts.
 
 #include <gtest/gtest.h>
 

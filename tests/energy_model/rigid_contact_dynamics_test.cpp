@@ -1,5 +1,5 @@
-// Moving rods that meet rigid obstacles: a polygon with a contact of another kind, shapes at rest
-// on them, and their own energy.
+// Tests of moving rods that meet rigid obstacles, against a polygon with another contact law,
+// shapes at rest on the obstacles, and the balance of energy.
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-// Rods with bodies in their way, which they may pass on either side.
+// Tests of rods that may pass a body on either side.
 
 #include <gtest/gtest.h>
 

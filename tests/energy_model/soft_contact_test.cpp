@@ -1,4 +1,4 @@
-// Rods on obstacles that yield: their energy, held by the work that moving an obstacle takes.
+// Tests of rods on yielding obstacles: their energy against the work that moving an obstacle takes.
 
 #include <gtest/gtest.h>
 

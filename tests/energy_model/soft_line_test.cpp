@@ -1,5 +1,5 @@
-// Catenaries with bending layers: against closed forms, and against the rod's own models where
-// these still resolve the layers.
+// Tests of catenaries with bending layers: against closed forms, and against the rod's own models
+// where these still resolve the layers.
 
 #include "dlo/energy_model/soft_line.hpp"
 

@@ -1,4 +1,5 @@
-// The objective of the energy model: its derivatives, and that it never waits for the allocator.
+// Tests of the objective of the energy model: its derivatives, and that its evaluation allocates no
+// memory.
 
 #include "strain/span_energy.hpp"
 

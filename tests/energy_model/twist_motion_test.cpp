@@ -1,4 +1,5 @@
-// Rods that move and twist: clamps that hold frames, natural curvature, two bending stiffnesses.
+// Tests of rods that move and twist: clamps that hold frames, natural curvature, two bending
+// stiffnesses.
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-// Rods whose clamps hold their frames: twist against closed forms, laws and symmetries.
+// Tests of rods whose clamps hold their frames: twist against closed forms, laws and symmetries.
 
 #include <gtest/gtest.h>
 

@@ -1,5 +1,5 @@
-// Free vibrations against closed forms, and about heavy shapes against the linearised equations of
-// a rod in space, shot from the tip.
+// Tests of free vibrations: against closed forms and, about heavy shapes, against the linearised
+// equations of a rod in space, integrated from the tip.
 
 #include "dlo/energy_model/vibrations.hpp"
 

@@ -1,4 +1,4 @@
-// A real-time loop may not wait for the allocator: steps must not call it.
+// Tests that steps allocate no memory, because a real-time loop must not wait for the allocator.
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-// Each rod of a batch does what its own Simulation does.
+// Tests that each rod of a batch moves as in a Simulation of its own.
 
 #include "dlo/force_model/batch.hpp"
 

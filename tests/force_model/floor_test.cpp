@@ -1,4 +1,4 @@
-// A rod that lies on a stiff floor comes to rest, whatever the rounding of its start and steps.
+// Tests that a rod on a stiff floor comes to rest for any rounding of its start and steps.
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,5 @@
-// Times of `implicit`: to rest, and of a frame behind a gripper that moves.
+// Measures the stepper `implicit`: the time to rest, and the time of a frame behind a gripper that
+// moves.
 
 #include <benchmark/benchmark.h>
 

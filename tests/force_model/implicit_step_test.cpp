@@ -1,5 +1,5 @@
-// Implicit steps: where they rest, in how many solves, how they follow a gripper and walls, and how
-// they go through time.
+// Tests of implicit steps: their shapes at rest, the number of solves, the motion behind a gripper
+// and on walls, and steps in real time.
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-// The claim `at rest` is compared with the shape after many more steps.
+// Tests that a rod that is reported `at rest` hardly moves in many further steps.
 
 #include "dlo/force_model/relax.hpp"
 

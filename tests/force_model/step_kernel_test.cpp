@@ -1,5 +1,5 @@
-// The kernel against steps written with total_forces and Eigen, on every instruction set that this
-// machine has.
+// Tests of the step kernel against steps written with total_forces and Eigen, on every instruction
+// set of this machine.
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-// The force model's twist between grips that hold the rod's frame.
+// Tests of the force model's twist between grips that hold the rod's frame.
 
 #include "dlo/force_model/twist.hpp"
 

@@ -1,4 +1,4 @@
-// Steps with velocities and real masses.
+// Tests of steps with velocities and real masses.
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-// Every seed, and every input that once broke a reader, goes through its reader.
+// Tests each reader with its seeds, and with every input that once broke it.
 
 #include <gtest/gtest.h>
 

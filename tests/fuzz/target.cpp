@@ -1,4 +1,4 @@
-// The fuzz target of one reader, DLO_READER.
+// Fuzz target of one reader, DLO_READER.
 
 #include <cstddef>
 #include <cstdint>

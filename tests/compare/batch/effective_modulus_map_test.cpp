@@ -1,4 +1,4 @@
-// The shipped map of E*/E, data/effective_modulus.csv.
+// Tests of the installed map of E*/E, data/effective_modulus.csv.
 
 #include <gtest/gtest.h>
 

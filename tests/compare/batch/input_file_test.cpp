@@ -1,4 +1,4 @@
-// Every failure to read a file is reported, and the size of a file is limited.
+// Tests of reading files: every failure is reported, and the size of a file is limited.
 
 #include "base/input_file.hpp"
 

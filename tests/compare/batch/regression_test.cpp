@@ -1,4 +1,4 @@
-// Baselines, verdicts, JUnit.
+// Tests of `dlo regress`: baselines, verdicts and JUnit reports.
 
 #include "batch/regression.hpp"
 

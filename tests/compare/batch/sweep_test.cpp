@@ -1,4 +1,4 @@
-// Grids, scenes with other values, rows.
+// Tests of sweeps: grids, scenes with other values, and rows of the table.
 
 #include "batch/sweep.hpp"
 

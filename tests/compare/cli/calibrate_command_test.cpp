@@ -1,4 +1,4 @@
-// The command calibrate on measured shapes, as a user runs it.
+// Tests of the command `dlo calibrate` with measured shapes.
 
 #include <fmt/format.h>
 #include <gtest/gtest.h>

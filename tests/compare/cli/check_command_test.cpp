@@ -1,4 +1,4 @@
-// The command check as a user runs it.
+// Tests of the command `dlo check`.
 
 #include <fmt/format.h>
 #include <gtest/gtest.h>

@@ -1,4 +1,4 @@
-// The command as a user runs it: exit status, standard output, standard error, files.
+// Tests of the command `dlo`: exit status, standard output, standard error and files.
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-// Every example of every --help is run, no option takes an empty value, and the manual page that
+// Tests of --help: every example runs, no option accepts an empty value, and the manual page that
 // help2man makes lists every command.
 
 #include <gtest/gtest.h>

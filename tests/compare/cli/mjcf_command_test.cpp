@@ -1,4 +1,4 @@
-// MuJoCo's models as a user checks them, against the positions of the bodies of chains of rigid
+// Tests of `dlo check` with MuJoCo models, against the positions of the bodies of chains of rigid
 // segments at rest.
 
 #include <gtest/gtest.h>

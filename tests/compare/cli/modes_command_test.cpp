@@ -1,4 +1,4 @@
-// The command modes as a user runs it.
+// Tests of the command `dlo modes`.
 
 #include <gtest/gtest.h>
 

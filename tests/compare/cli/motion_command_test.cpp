@@ -1,4 +1,4 @@
-// Recorded motions through the command: check --motion and calibrate --motion.
+// Tests of the commands for recorded motions: `check --motion` and `calibrate --motion`.
 
 #include <fmt/format.h>
 #include <gmock/gmock.h>

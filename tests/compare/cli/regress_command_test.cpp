@@ -1,4 +1,4 @@
-// dlo regress as a user and a CI run it.
+// Tests of the command `dlo regress`, by hand and in a CI.
 
 #include <gtest/gtest.h>
 

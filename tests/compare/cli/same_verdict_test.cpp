@@ -1,5 +1,5 @@
-// One shape has one verdict, in one sentence: from the command, from the library and from
-// GoogleTest's matchers.
+// Tests that the command, the library and GoogleTest's matchers give the same verdict on a shape,
+// in the same sentence.
 
 #include <nlohmann/json.hpp>
 #include <random>

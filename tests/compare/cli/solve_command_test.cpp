@@ -1,4 +1,4 @@
-// The command solve, and compare of the same scenes, as a user runs them.
+// Tests of the command `dlo solve`, and of `dlo compare` with the same scenes.
 
 #include <gtest/gtest.h>
 

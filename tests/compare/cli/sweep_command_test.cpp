@@ -1,4 +1,4 @@
-// dlo sweep as a user and a scheduler run it.
+// Tests of the command `dlo sweep`, by hand and by a scheduler of parts.
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-// Progress and colours: on a terminal only, and never in a result.
+// Tests of progress and colours: they appear on a terminal only, and never in a result.
 
 #include <gtest/gtest.h>
 

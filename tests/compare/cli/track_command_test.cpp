@@ -1,4 +1,4 @@
-// The command track as a user runs it.
+// Tests of the command `dlo track`.
 
 #include <gtest/gtest.h>
 

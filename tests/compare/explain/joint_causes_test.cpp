@@ -1,4 +1,4 @@
-// Files in which two things are wrong at once: both are named.
+// Tests of files with two errors at once: both are named.
 
 #include <fmt/format.h>
 #include <gtest/gtest.h>

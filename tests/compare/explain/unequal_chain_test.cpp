@@ -1,4 +1,4 @@
-// Chains of hinges whose segments are unequal, against an independent chain.
+// Tests of chains of hinges with unequal segments, against an independent chain.
 
 #include <gtest/gtest.h>
 

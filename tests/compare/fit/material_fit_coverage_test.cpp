@@ -1,4 +1,5 @@
-// How often the intervals of fitted moduli hold the truth, of independent and of correlated errors.
+// Tests of the share of intervals of fitted moduli that contain the true value, with independent
+// and with correlated errors.
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-// A rod that is let go, by the energy model and as a chain of hinges, against closed forms.
+// Tests of released rods, by the energy model and as a chain of hinges, against closed forms.
 
 #include "released/hinge_motion.hpp"
 

@@ -1,4 +1,4 @@
-// Cables of layers: bounds of their stiffness.
+// Tests of cables of layers: bounds of their stiffness.
 
 #include <gtest/gtest.h>
 

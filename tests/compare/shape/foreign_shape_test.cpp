@@ -1,4 +1,4 @@
-// Shapes as other programs write them. The arrays of tests/fuzz/corpus/shape were written by NumPy.
+// Tests of shape files of other programs. NumPy wrote the arrays of tests/fuzz/corpus/shape.
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-// Scenes with several grips, or one inside the rod, in the models that work on a polygon.
+// Tests of scenes with several grips, or one inside the rod, in the models that work on a polygon.
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-// Joints of model chain as other programs have them.
+// Tests of the joint laws of other programs in model `chain`.
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-// A rod that grippers hold at exactly its own length, in all models.
+// Tests of rods whose grippers are exactly as far apart as the rod is long, in all models.
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-// Rods that clamps twist, as the force model and its chain take them.
+// Tests of rods that clamps twist, in the models `force` and `chain`.
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-// The battery and its certified answers.
+// Tests of the benchmark set and its certified answers.
 
 #include "suite/pack.hpp"
 

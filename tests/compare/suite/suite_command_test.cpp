@@ -1,4 +1,4 @@
-// dlo suite: score cards of simulators that are wrong on purpose.
+// Tests of the command `dlo suite`: score cards of simulators with deliberate errors.
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

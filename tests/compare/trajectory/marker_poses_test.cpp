@@ -1,4 +1,4 @@
-// Grippers that two markers show, each at its own times.
+// Tests of grippers whose poses follow from two markers with different times.
 
 #include <fmt/format.h>
 #include <gtest/gtest.h>

@@ -1,4 +1,4 @@
-// An array of points is judged, in a scene made in code: doc/tutorial/ci.md shows this.
+// Example of doc/tutorial/ci.md: judges an array of points, with a scene that is made in code.
 
 // [page]
 #include <dlo/compare.hpp>
