@@ -136,7 +136,7 @@ bool is_given_by_stiffness(const compare::Scene& scene) {
     return scene.given_bending_stiffness.has_value();
   }
   throw compare::InputError(
-      fmt::format("calibrate: {} and {} are of no one table (allowed: a scene with both "
+      fmt::format("calibrate: no table can contain both {} and {} (allowed: a scene with both "
                   "bending_stiffness and "
                   "mass_per_length, or with neither; -o FILE.json)",
                   scene.stiffness().name, scene.mass_parameter().name));

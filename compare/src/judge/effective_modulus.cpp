@@ -180,7 +180,7 @@ double rms_distance_from_straight(const Scene& scene, const energy_model::Equili
 /// smallest eigenvalue is zero and increases on both sides; on one side it belongs to another
 /// branch.
 bool is_at_bifurcation(FollowedState& state, double log_ratio) {
-  // The distance from its end to which an equilibrium is followed.
+  // Equilibria are followed up to this distance from the end of their branch [ln of the modulus].
   constexpr double offset = 2 * least_step;
   constexpr double least_eigenvalue_share = 0.25;
   const double low = log_ratio - offset;
