@@ -131,7 +131,7 @@ TEST(Energy, NextToBucklingTheErrorStatedCoversTheTrueOne) {
         const Eigen::Matrix3Xd points = found.sample(equal_arc_lengths(1, expected.cols())).points;
         const double off = (points.topRows(2) - expected).colwise().norm().maxCoeff();
         EXPECT_LE(off, found.error_estimate + 2e-9) << plain << ": " << found.message;
-        EXPECT_LT(found.error_estimate, 1e-3) << "says nothing";
+        EXPECT_LT(found.error_estimate, 1e-3) << "the estimate is not meaningful";
         EXPECT_TRUE(off < 1e-6 || !succeeded(found.status)) << off << " l, " << found.message;
       }
     }

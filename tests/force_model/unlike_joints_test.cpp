@@ -48,7 +48,7 @@ TEST(UnlikeJoints, ForcesAreTheGradientOfTheEnergyAndBalance) {
     add_bending_forces(points, rest, bending, forces);
     Eigen::Matrix3Xd expected = difference_forces(
         [&](const Eigen::Matrix3Xd& p) { return bending_energy(p, rest, bending); }, points, 1e-7);
-    if (natural) expected.row(2).setZero();  // across the plane nothing is said
+    if (natural) expected.row(2).setZero();  // natural angles are not defined across the plane
     const double size = forces.cwiseAbs().maxCoeff();
     EXPECT_LT((forces - expected).cwiseAbs().maxCoeff(), 1e-6 * size) << natural;
     EXPECT_LT(forces.rowwise().sum().norm(), 1e-13 * size);

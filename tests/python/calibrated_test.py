@@ -1,4 +1,4 @@
-"""What a calibration found, in the place of what scenes say: as the command has it, to the digit."""
+"""Tests of calibrated rods in place of the scenes' own: Python and the command give the same digits."""
 
 import subprocess
 
@@ -68,7 +68,7 @@ def test_what_calibrate_returns_is_what_its_file_says(cable, tmp_path):
 
 @pytest.fixture
 def stiff():
-    """A scene, w l^3 / (EI) = 0.5, and three pictures of it."""
+    """Returns a scene with w l^3 / (EI) = 0.5, and three noisy shapes of it with arc lengths."""
     scene = dlo.Scene(length=1, bending_stiffness=1.962, mass_per_length=0.1,
                       grippers=[dlo.clamp(at=0, position=(0, 0, 0), direction="20 deg")])
     rod = dlo.solve(scene, samples=30)

@@ -1,4 +1,4 @@
-"""What the tests share."""
+"""Fixtures and helpers of the Python tests."""
 
 import ctypes
 import gc
@@ -21,8 +21,8 @@ SANITIZED = "asan" in PRELOADED
 
 
 def leak_report():
-    """What the sanitizer prints of memory that no pointer leads to. It is asked in a process of its own:
-    stopping all threads to look may kill the one that asks, seen once beside a busy clang-tidy."""
+    """Returns the sanitizer's report of leaked memory. The leak check runs in a child process, because it stops
+    all threads, which may kill the process that calls it (observed once on a busy machine)."""
     for _ in range(3):
         with tempfile.TemporaryFile("w+") as report:
             child = os.fork()
@@ -38,8 +38,8 @@ def leak_report():
 
 @pytest.fixture(scope="session", autouse=True)
 def no_leaks():
-    """Under the sanitizer: the module has lost nothing of what it took, at the end of all tests. What
-    the interpreter and other modules have lost is not asked."""
+    """Checks in a sanitizer build that the module has leaked no memory at the end of all tests. Leaks of the
+    interpreter and of other modules are ignored."""
     yield
     if SANITIZED:
         gc.collect()
@@ -56,19 +56,19 @@ def sanitized():
 
 @pytest.fixture
 def interpreter():
-    """How another Python is started that can import dlo."""
+    """Returns the command that starts another Python that can import dlo."""
     return ["env", "LD_PRELOAD=" + PRELOADED, sys.executable] if PRELOADED else [sys.executable]
 
 
 @pytest.fixture
 def root():
-    """The repository, whose data/ and pages are read."""
+    """Returns the folder of the repository, whose data/ and pages are read."""
     return pathlib.Path(os.environ["DLO_ROOT"])
 
 
 @pytest.fixture
 def command():
-    """The command dlo of the same build."""
+    """Returns the path of the command dlo of the same build."""
     return os.environ["DLO_COMMAND"]
 
 
@@ -82,7 +82,7 @@ def without_times(document):
 
 @pytest.fixture
 def command_json(command):
-    """Runs the command with these arguments. Returns its document without times."""
+    """Returns a function that runs the command with its arguments and returns the document without times."""
     def run(*arguments):
         words = [command, *map(str, arguments), "--format", "json"]
         done = subprocess.run(words, capture_output=True, text=True)
@@ -94,7 +94,7 @@ def command_json(command):
 
 @pytest.fixture
 def steel():
-    """The paper's rod, horizontal: Gamma = 0.18."""
+    """Returns a scene of the paper's rod, clamped horizontally: Gamma = 0.18."""
     return dlo.Scene(
         length="50 cm",
         diameter="2 mm",
@@ -105,7 +105,7 @@ def steel():
 
 @pytest.fixture
 def cable():
-    """A soft one: Gamma = 361."""
+    """Returns a scene of a soft cable: Gamma = 361."""
     return dlo.Scene(
         length="1 m",
         diameter="10 mm",

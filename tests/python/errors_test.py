@@ -1,4 +1,4 @@
-"""Errors, signals and threads."""
+"""Tests of errors, signals and threads."""
 
 import itertools
 import os

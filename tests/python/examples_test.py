@@ -1,4 +1,4 @@
-"""The examples run, and every page shows what its Python prints."""
+"""Tests that the examples run, and that every page shows what its Python prints."""
 
 import contextlib
 import importlib.util
@@ -18,7 +18,7 @@ PAGES = sorted(str(path.relative_to(ROOT)) for folder in (".", "doc", "compare",
 @pytest.mark.parametrize("path", sorted((ROOT / "compare/python/examples").glob("*.py")),
                          ids=lambda path: path.stem)
 def test_example_runs(path):
-    """Each asserts what it says."""
+    """Each example asserts the results that its text states."""
     printed = io.StringIO()
     with contextlib.redirect_stdout(printed):
         exec(compile(path.read_text(), path, "exec"), {"__name__": "__main__"})
@@ -26,7 +26,7 @@ def test_example_runs(path):
 
 
 def blocks(page):
-    """(code, output or None) of a page's fenced blocks."""
+    """Returns pairs (code, output or None) of a page's fenced blocks."""
     fenced = re.findall(r"^```(python|text)\n(.*?)^```$", page, re.MULTILINE | re.DOTALL)
     for i, (kind, text) in enumerate(fenced):
         if kind == "python":

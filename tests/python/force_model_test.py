@@ -1,4 +1,4 @@
-"""The loop: it rests where the solver says, and writes into given arrays."""
+"""Tests of the loop: it comes to rest at the solver's shape, and writes into given arrays."""
 
 import numpy
 import pytest

@@ -1,4 +1,4 @@
-"""Baselines and reports: what the command does, from Python."""
+"""Tests of baselines and reports: Python gives the results of the command."""
 
 import json
 import subprocess

@@ -1,4 +1,4 @@
-"""Results: arrays that are views, and the command's own documents."""
+"""Tests of results: arrays that are views, and the command's own documents."""
 
 import copy
 import gc

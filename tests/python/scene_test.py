@@ -1,4 +1,4 @@
-"""Scenes: the same whether read or built, and the same errors."""
+"""Tests of scenes: a scene built in code equals the same scene from a file, and so do the errors."""
 
 import math
 import pickle

@@ -1,4 +1,4 @@
-"""The suite's schemas, by a validator: committed answers, a fresh card, and documents that are none."""
+"""Tests of the suite's schemas with a validator: committed answers, a new card, and invalid documents."""
 
 import copy
 import json

@@ -1,4 +1,4 @@
-"""How results show themselves, and their pictures."""
+"""Tests of the representations of results, and of their pictures."""
 
 import builtins
 import xml.etree.ElementTree
@@ -19,7 +19,7 @@ def closed():
 
 
 def hung(**fields):
-    """A soft rod that hangs from a clamp, but for some fields."""
+    """Returns a soft rod that hangs from a clamp, with some fields changed."""
     scene = {
         "length": "1 m",
         "diameter": "8 mm",
@@ -41,7 +41,7 @@ SCENES = {
 
 
 def shapes(name):
-    """Every kind of result of a scene that has a picture."""
+    """Returns every kind of result that has a picture, of one scene."""
     scene = SCENES[name]()
     scene.force_model = {"points": 12}
     solution = dlo.solve(scene, samples=41)
@@ -98,7 +98,7 @@ def test_no_legend_lies_on_a_plot(name, root, tmp_path):
 
 
 def test_a_picture_is_the_librarys():
-    """Titles, limits and points are those of the library's description, which gnuplot draws, too."""
+    """Titles, limits and points equal those of the library's description, from which gnuplot also draws."""
     result = dlo.solve(SCENES["tall"](), samples=41)
     panel = result._panel(None)
     ax = result.plot()

@@ -1,4 +1,4 @@
-"""dlo.suite: simulators that are functions, right and wrong on purpose."""
+"""Tests of dlo.suite: simulators that are functions, correct or with deliberate errors."""
 
 import importlib.util
 import json

@@ -1,4 +1,4 @@
-"""Rods while their grippers move."""
+"""Tests of rods while their grippers move."""
 
 import numpy
 import pytest
@@ -88,7 +88,7 @@ def swung_wire(stiffness):
 
 
 def recorded():
-    """The markers of a rod that is swung, and their times."""
+    """Returns the rows of markers of a swinging rod, and their times."""
     way = dlo.track(swung_wire(0.02), frame_rate=40, force=False, samples=5, dynamic=True, damping=0.01)
     rows = [
         [time, s, *point]
@@ -119,7 +119,7 @@ def test_stiffness_from_a_recorded_motion(tmp_path):
 
 
 def test_a_recorded_motion_is_judged(tmp_path):
-    """Of the rod with inertia: right with it, wrong without, and late."""
+    """A recording of a rod with inertia passes with inertia and fails without it; a late recording has a lag."""
     scene = swung_wire(0.02)
     rows, times = recorded()
     right = dlo.check(scene, motion=rows, dynamic=True, damping=0.01, tolerance="0.1%")

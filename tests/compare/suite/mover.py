@@ -1,4 +1,5 @@
-"""A cantilever without weight that is let go, by the closed form of its first mode: right, and wrong in several ways.
+"""A simulator for tests of dlo suite: a released cantilever without weight, by the closed form of its first mode,
+correct or with a deliberate defect.
 
     mover.py DEFECT SCENE POINTS SHAPE
 """

@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""A chain of hinges in a plane under one clamp, right or wrong on purpose: what dlo suite has to tell apart.
+"""A simulator for tests of dlo suite: a plane chain of hinges under one clamp, correct or with a deliberate defect.
 
     simulator.py DEFECT SCENE POINTS SHAPE
 
@@ -12,11 +12,11 @@
     soft           springs 0.7 EI/h
     light          0.8 of the weight
     weightless     no weight
-    caps           each element's weight has that of a ball of 0.005 l radius more, as a capsule has
+    caps           each element also has the weight of a ball of radius 0.005 l, as a capsule has
     limp           no springs
     not_at_rest    stopped on its way to rest
 
-A scene that it does not have is exit status 3.
+A scene that it does not support ends in exit status 3.
 """
 
 import json
@@ -107,7 +107,7 @@ class Chain:
         return gradient, diagonal, lower
 
     def moved(self, steps, growth):
-        """Angles after implicit steps of its way to rest, each longer than the last by a factor."""
+        """Returns the angles after implicit steps towards rest, each longer than the previous one by a factor."""
         angles = [self.clamp] * len(self.lengths)
         time = self.relaxation / 100
         for _ in range(steps):
@@ -129,7 +129,7 @@ class Chain:
 
 
 def not_supported(scene):
-    """Why it does not have a scene; None: it has."""
+    """Returns why a scene is not supported; None if it is."""
     rod, grippers = scene["rod"], scene["grippers"]
     if len(grippers) != 1 or grippers[0]["at_m"] != 0 or grippers[0]["hold"] != "clamp":
         return "grippers other than one clamp at the begin"
@@ -143,7 +143,7 @@ def not_supported(scene):
 
 
 def shape(defect, scene, points):
-    """Rows of x, y."""
+    """Returns the points as rows of x, y."""
     chain = Chain(scene, points, defect)
     if defect == "limp":
         return list(chain.points([-math.pi / 2] * len(chain.lengths)))
