@@ -136,7 +136,7 @@ int run_command(std::vector<std::string> words) {
   const compare::InputsKept kept;
   CLI::App app(
       "Is the shape of a simulated rod, wire or cable the shape that its material would take? dlo "
-      "computes it from bending energy and gravity, and says how far others are from it.",
+      "computes it from bending energy and gravity, and prints how far other shapes are from it.",
       "dlo");
   std::optional<CommandTimeLimit> limit;
   if (words.empty()) words.emplace_back("--help");

@@ -11,9 +11,9 @@ CalculiX makes of its beam elements B32R, but here grips prescribe all of an end
 rotational degrees of freedom of an expanded beam's end stop converging at 0.3 rad. The section is the
 square with the scene's EI and EA, which two points of integration a side take exactly; of SECTION=CIRC they
 make 2.4 % too much bend. Poisson's ratio is zero, since a clamp hinders the section's change of shape all
-over its first element; G alone says what twist needs. Such a rod also stretches and shears, so that `energy`,
-which does neither, is as far away as the rod's thickness makes it: with THINNER = 4 the section has the same
-EI and GJ and a quarter of the thickness, and that distance is a sixteenth.
+over its first element; G alone determines the torsional stiffness. Such a rod also stretches and shears, unlike
+that of `energy`. The distance between both shapes follows from the thickness: with THINNER = 4 the section has
+the same EI and GJ and a quarter of the thickness, and the distance is a sixteenth.
 
 The rod starts straight from its first grip. If a second one holds its end, the rod is first bent upwards to a
 circle, which takes no force along it and lets it hang below its end; then the end goes to its place, then it

@@ -22,7 +22,7 @@ import tempfile
 
 POINTS = 8
 COUNTS = ("right", "wrong", "failed", "not supported")
-SMALL = 1e-5  # errors over the length whose order says nothing
+SMALL = 1e-5  # error over the length below which the order is not meaningful
 SHARE = 0.1  # of a number, by which it may differ where processors round otherwise
 
 

@@ -19,7 +19,7 @@ class InputError(ValueError):
 
 
 class ConvergenceError(RuntimeError):
-    """A solver did not converge; the message says which one and why.
+    """A solver did not converge; the message states which one and why.
 
     result: the result so far, from which no conclusions can be drawn, or None.
     """

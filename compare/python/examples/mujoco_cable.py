@@ -23,7 +23,7 @@ mistyped = cable.replace(
 xpos = dlo.solve(mistyped, model="chain").points  # yours: data.xpos[first:last]
 
 # %% [markdown]
-# `check` lays them on the shape that the material would take, and says what is wrong.
+# `check` compares them with the shape that the material would take, and prints the most likely cause of a difference.
 
 # %%
 check = dlo.check(cable, xpos, tolerance="1%")

@@ -381,10 +381,10 @@ double Branch::leave_branch(double at, double rejected, Passage& passage) {
     passage.released_bound += work.bound + noise_;
   }
   now_ = std::move(after);
-  // Witnesses of another branch say nothing about the end of the new one.
+  // Samples of the former branch contain no information about the end of the new one.
   last_samples_.reset();
   record_sample(at + step);
-  // Neither do changes of forces across a jump.
+  // Changes of forces across a jump do not contain it either.
   changes_.clear();
   return step;
 }

@@ -140,12 +140,13 @@ PaperReport paper_report(const Stages& progress) {
   report.variants = variants(paper_scenes().front());
   report.assumptions = {
       "Figs. 12 and 13 print no numbers: their shapes are computed here, not read off.",
-      "The simulation starts straight along the gripper; the paper does not say from where.",
+      "The simulation starts straight along the gripper; the paper does not state the initial "
+      "shape.",
       "4000 steps per simulated second: Table 2's 112000 steps in 28 s.",
       fmt::format("No dynamics on the way to rest, {} as in Table 1's proportion; the paper gives "
                   "neither for this experiment.",
                   table_1_step_formula),
-      fmt::format("c_c = {} N, which the text says Fig. 12 was calculated with.",
+      fmt::format("c_c = {} N, the value that the text gives for Fig. 12.",
                   printed_contraction_stiffness()),
       "Formula 4 with the signs that balance (as printed, a joint drives itself).",
       fmt::format(

@@ -52,9 +52,9 @@ class PolygonResponse {
 
   // The functions return the RMS displacement of the points along the rod [m]. It is infinite if
   // the rod cannot respond, as a taut rod cannot get longer, or if the matrix is near singular: for
-  // a symmetric shape the response is then zero, which says nothing about the buckled shape close
-  // to it. The matrix counts as regular if the second variation is still positive with 5 % less
-  // stiffness of the joints.
+  // a symmetric shape the response is then zero and does not bound the distance of the buckled
+  // shape close to it. The matrix counts as regular if the second variation is still positive with
+  // 5 % less stiffness of the joints.
 
   /// Returns the response to stretch. @param stiffness  EA [N]
   [[nodiscard]] StretchResponse stretch(double stiffness) const;

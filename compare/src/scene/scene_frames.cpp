@@ -159,7 +159,7 @@ Eigen::Matrix3d Scene::first_frame() const {
   if (!has_d1 && !energy_model::natural_normal(problem)) {
     throw InputError(fmt::format(
         "{}: rod.{}: the scene without loads lies in no plane or in more than one, or a load has a "
-        "component out of it, and the first clamp does not say where d1 is (allowed: frame or "
+        "component out of it, and the first clamp does not define d1 (allowed: frame or "
         "quaternion there)",
         gripper.where.empty() ? file : gripper.where, key));
   }

@@ -310,7 +310,7 @@ class Certification {
 
   /// Counts a mode that shifts the shape along the rod as a rigid-body mode. The component of
   /// Newton's step along zero modes is rounding divided by their eigenvalues, and is removed: it
-  /// says nothing about the error of the shape.
+  /// is unrelated to the error of the shape.
   void count_sliding_mode(NewtonSystem& system) {
     const auto modes =
         sliding_modes(model_, solution_.x, system.reduced_hessian(), rigid_.in_plane);

@@ -4,7 +4,7 @@
     dlo suite --with newton='python3 newton_rod.py {scene} {points} {shape}'
 
 A cable of its model builder: capsules joined by cable joints, whose bend stiffness is given by joint. Its
-first body is held, so that the first element does not bend: the card will say so."""
+first body is held, so that the first element does not bend: the results table reports this."""
 
 import sys
 

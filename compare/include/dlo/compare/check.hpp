@@ -80,8 +80,8 @@ struct ShapeTestOutcome {
 
 /// Checks a shape by its RMS deviation, at its own arc lengths. A malformed shape (different
 /// numbers of points and arc lengths, fewer than two, not finite, arc lengths that neither increase
-/// nor decrease, or that leave the rod by more than 1e-6 l) is not near, and the explanation says
-/// why.
+/// nor decrease, or that leave the rod by more than 1e-6 l) is not near, and the explanation states
+/// the defect.
 /// @param tolerance  share of the rod's length or of_deflection() [-], > 0
 /// @throws std::invalid_argument for a tolerance that is not > 0, InputError, ConvergenceError
 [[nodiscard]] ShapeTestOutcome shape_near(const Shape& shape, const Scene& scene,
