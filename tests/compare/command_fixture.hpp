@@ -31,7 +31,7 @@ struct Outcome {
   std::string err;
 };
 
-/// Runs the command in a folder of its own.
+/// Fixture that runs the command in a private folder.
 class Command : public Folder {
  protected:
   /// Returns words joined by blanks.

@@ -300,8 +300,8 @@ TEST(SectionsOfTheirOwnShape, ObeyKirchhoffsEquationsInBothModels) {
       problem.sections[1].weight_per_length = {0, -2, spatial ? 1.0 : 0};
       problem.grips[0].frame = FrameHold{Vector3d::UnitY(), 0};
       if (spatial) {
-        // A section's own natural strain replaces the series there; a strain that it does not
-        // define does not.
+        // The natural strains that a section defines replace the series in the section. For its
+        // other strains the series remains.
         problem.natural_strains = {{1, -0.5, 0.4}, {0.5, 0.3, -1}};
         problem.sections[0].natural_twist = 2;
         problem.sections[1].natural_curvature.reset();

@@ -99,7 +99,8 @@ TEST(Solution, CurvatureAndTensionAreThoseOfTheGrippers) {
   }
 }
 
-// Also next to the gripper, which holds half of a segment, and between a polygon's joints.
+// The curvature also agrees next to the gripper, which holds half of a segment, and between the
+// joints of the polygon.
 TEST(Solution, AFinePolygonHasTheCurvatureOfTheRod) {
   Scene scene = loaded_arch();
   scene.force_model.points = 160;

@@ -231,7 +231,8 @@ TEST_F(SuiteCommand, HoldsErrorsAgainstABaselineOfRegress) {
   succeeds("suite --with chain --with force" + scenes + gate + " --update");
   expect_output("suite --with chain" + scenes + gate, 0,
                 {"\n3 same\n"});  // a strip is not supported
-  // The baseline is changed as if the errors of one simulator had been a tenth.
+  // The errors of one simulator in the baseline are divided by ten, so that its errors now have
+  // increased.
   std::vector<dlo::compare::BaselineCase> cases = dlo::compare::load_baseline(file);
   ASSERT_EQ(cases.size(), 6U);
   for (dlo::compare::BaselineCase& one : cases) {
