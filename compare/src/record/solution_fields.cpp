@@ -44,7 +44,7 @@ std::span<const Field<SolvedShape>> solution_fields() {
       {"scene", "", "The scene's name", [](S s) { return s.scene.name; }, document},
       {"model", "", "\"energy\", \"chain\", \"exact\" or \"force\"",
        [](S s) -> std::string { return to_string(s.solution.model); }, document},
-      {"converged", "", "Whether it is an equilibrium, proven stable",
+      {"converged", "", "Whether the shape is an equilibrium that is proven stable",
        [](S s) { return energy_model::succeeded(s.solution.status); }, document},
       {"status", "",
        "\"converged\", \"roundoff_limited\", \"saddle\", \"near_singular\" or \"not_verified\"",

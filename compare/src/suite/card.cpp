@@ -45,7 +45,7 @@ CardScene run_scene(const BatteryScene& scene, const Simulator& simulator,
     }
     run.shape.reset();
     run.motion.reset();
-    // More points would not be supported either.
+    // If a scene is not supported, further runs with more points are skipped.
     if (run.status == RunStatus::not_supported) break;
   }
   return result;

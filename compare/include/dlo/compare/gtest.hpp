@@ -66,7 +66,8 @@ class ShapeMatcher {
   ShapeMatcher(ShapeTest test, Scene scene, ToleranceShare tolerance)
       : test_(test), scene_(std::move(scene)), tolerance_(tolerance) {}
 
-  /// Whether the shape is the scene's; streams the reason.
+  /// Whether the shape is within the tolerance of the scene's equilibrium.
+  /// @param[out] explanation  stream to which the reason is written; null: none
   bool MatchAndExplain(const Shape& shape, std::ostream* explanation) const {
     const ShapeTestOutcome result = test_(shape, scene_, tolerance_);
     if (explanation != nullptr) *explanation << result.explanation;
