@@ -63,7 +63,7 @@ set(CPACK_DEBIAN_LIBDLO_DEV_PACKAGE_SUGGESTS libgtest-dev)
 dlo_debian(dlo COMPONENTS command SECTION science
   DESCRIPTION "compares fast models of rods, wires and cables with physics
 Solves scenes of rods held by grippers under gravity with a fast force-based
-model and with the rod's bending and gravity energy, says how far the shapes
+model and with the rod's bending and gravity energy, prints how far the shapes
 are apart, why, and at what cost, checks the shapes of other simulators and
 calibrates their parameters.")
 set(CPACK_DEBIAN_DLO_PACKAGE_SHLIBDEPS ON)
