@@ -114,7 +114,7 @@ TEST(DynamicTrack, MeasuresTheForceModelAgainstTheMovingRod) {
   options.force = ForceModelRun::runs;
   options.to = 0.1;
   Scene scene = swung(1);
-  scene.track.steps = 3000;
+  scene.track.step_rate = 3000;
   const Track at_rest = track(scene, options);
   const DynamicTrack result = dynamic_track(scene, at_rest, options, {});
   ASSERT_TRUE(result.force);

@@ -279,7 +279,7 @@ TEST(Track, GoesOnAtRestBeyondTheLastPose) {
   options.to = 1.5;
   options.force = ForceModelRun::runs;
   Scene scene = swung();
-  scene.track.steps = 3000;
+  scene.track.step_rate = 3000;
   const Track result = track(scene, options);
   ASSERT_EQ(result.frames.size(), 31U);
   EXPECT_FALSE(result.stopped);
@@ -371,7 +371,7 @@ double best_delay(const std::vector<Eigen::Matrix3Xd>& leader,
 // The lag in the summary is in seconds, for any frame rate.
 TEST(Track, TheForceModelsLagIsTheDelayAtWhichItIsNearest) {
   Scene scene = load_scene(std::string(DLO_DATA) + "/scenes/swung_rod.toml");
-  scene.track.steps = 6000;
+  scene.track.step_rate = 6000;
   for (const double rate : {100.0, 200.0}) {
     TrackOptions options = at_rate(rate);
     options.force = ForceModelRun::runs;
