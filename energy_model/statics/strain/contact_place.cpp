@@ -8,7 +8,8 @@
 namespace dlo::energy_model {
 namespace {
 
-constexpr Eigen::Index force_terms_of_short_part = 4;  // coefficients of the force on a short part
+/// Number of coefficients of the force on a short element.
+constexpr Eigen::Index force_terms_of_short_part = 4;
 constexpr int pressure_samples = 32;  // number of samples of the pressure on an element
 
 /// Evaluates a series in orthonormal Legendre polynomials at xi.
@@ -19,8 +20,9 @@ double series(const Eigen::Ref<const Eigen::VectorXd>& coefficients, double xi) 
   return values.dot(coefficients);
 }
 
-/// Updates the extreme pressures with an element's pressure, the derivative of its force; the last
-/// coefficients are inaccurate in the derivative.
+/// Updates the extreme pressures with an element's pressure, minus the derivative of its force.
+/// @param smooth  coefficients of the force without the last ones, which are inaccurate in the
+///   derivative
 /// @param first  whether no earlier element has contributed
 void add_pressure(const Eigen::VectorXd& smooth, double length, bool first, ContactForce& force) {
   double last = series(smooth, 0);

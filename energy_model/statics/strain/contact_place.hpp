@@ -23,7 +23,8 @@ struct ContactEvaluation {
   /// Derivatives of the rows by the tangents: a matrix for each axis, nodes x rows.
   std::array<Eigen::MatrixXd, 3> by_tangent;
   std::vector<ClearanceMinimum> clearance_minima;
-  /// Clearances of points from bodies other than half-spaces, a list for each contact with one.
+  /// Clearances of points from bodies other than half-spaces, with their derivatives: one list for
+  /// the clearance at the begin of a contact, and one for the slope on each of its elements.
   std::vector<std::vector<obstacle::Gap>> gaps;
 
   /// Returns the products of the rows' derivatives with the vectors at the nodes, nodes x rows.
@@ -43,15 +44,17 @@ struct ContactEvaluation {
 /// at the begin and the end of the part in contact, which coincide for a contact at one point, and
 /// a pressure between them.
 struct ContactForce {
-  Eigen::Vector3d force = Eigen::Vector3d::Zero();   ///< resultant
-  Eigen::Vector3d moment = Eigen::Vector3d::Zero();  ///< moment of all rows about the span's anchor
-  double total = 0;                                  ///< sum of the forces along the normals
+  Eigen::Vector3d force = Eigen::Vector3d::Zero();  ///< resultant
+  /// Moment of the contact's rows about the span's anchor.
+  Eigen::Vector3d moment = Eigen::Vector3d::Zero();
+  double total = 0;           ///< sum of the forces along the normals
   double begin = 0, end = 0;  ///< concentrated forces; `end` is 0 for a contact at one point
   /// Smallest and largest force per length along the part; 0 for a contact at one point.
   double least_pressure = 0;
   double largest_pressure = 0;
-  /// Smallest concentrated force inside the part, at loads, grips and section changes. Jumps
-  /// between the series of two elements elsewhere are truncation errors and do not count.
+  /// Smallest concentrated force inside the part, at loads, grips and section changes; 0 if none is
+  /// negative. Jumps between the series of two elements elsewhere are truncation errors and do not
+  /// count.
   double least_inner_force = 0;
   /// Force, away from the obstacle, that the multipliers also exert on a grip at the begin or the
   /// end of the part. It is included in `moment`, and belongs to the grip, not to the obstacle.
@@ -77,12 +80,14 @@ struct ContactSeries {
   [[nodiscard]] Eigen::VectorXd own(const Eigen::VectorXd& multipliers) const;
 };
 
-/// Length of a part, divided by the rod length, below which a few moments of the slope describe it.
+/// Length of an element of a contact, divided by the rod length, below which only a few moments of
+/// the slope are rows.
 /// With more moments rounding would dominate Newton's last step and the forces derived from it.
 inline constexpr double short_part = 5e-3;
 
-/// Returns the forces of one contact from the multipliers' series N(s) = sum mu phi(s), without the
-/// direction of the resultant. @param multipliers  of the rows of all contacts
+/// Returns the forces of one contact from the multipliers' series N(s) = sum mu phi(s);
+/// ContactForce::force and ContactForce::moment remain zero.
+/// @param multipliers  of the rows of all contacts
 [[nodiscard]] ContactForce force_of_series(const ContactSeries& rows,
                                            const Eigen::VectorXd& multipliers);
 

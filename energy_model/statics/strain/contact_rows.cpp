@@ -9,7 +9,7 @@
 namespace dlo::energy_model {
 namespace {
 
-constexpr Eigen::Index slope_moments_of_short_part = 8;  // moments of the slope on a short part
+constexpr Eigen::Index slope_moments_of_short_part = 8;  // moments of the slope on a short element
 
 /// Whether a grip, a load or a section change is at `at`, which could cause a concentrated force.
 bool may_concentrate(const Span& span, double at) {
@@ -176,7 +176,8 @@ void ContactRows::resize(ContactEvaluation& place) const {
 }
 
 /// Finds the first minimum of the clearance, starting from touch.at, on the side to which the
-/// clearance decreases.
+/// clearance decreases. The rate of the result is 0 if there is no minimum between touch.low and
+/// touch.high.
 ContactEvaluation::ClearanceMinimum ContactRows::least_clearance(
     const Eigen::MatrixX3d& tangents, const ClearanceMinimum& touch) const {
   constexpr double closest = 1e-14;

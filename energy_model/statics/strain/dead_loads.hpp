@@ -16,7 +16,7 @@ class DeadLoads : public Term {
   void add_couples(Eigen::Vector3d& moment) const { moment.z() += couple_; }
   void add_energies(const TermSetup& setup, const SpanPoint& at, Energies& energies) const;
   /// Returns -dE/dt, nodes x 3: the node's quadrature weight times the load beyond it, as seen from
-  /// the anchor.
+  /// the anchor; at nodes before the anchor with the opposite sign.
   [[nodiscard]] const Eigen::MatrixX3d& force() const { return force_; }
 
  private:

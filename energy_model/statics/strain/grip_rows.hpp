@@ -75,8 +75,9 @@ class GripRows {
                             const Eigen::Ref<const Eigen::VectorXd>& multipliers,
                             std::vector<Eigen::Vector3d>& couples,
                             std::vector<Eigen::Matrix3d>& curvatures) const;
-  /// Adds the last row and column of the Hessian: second derivatives by the twist psi of `factor`
-  /// times the row of d1. Call it after FrameHessian::add(), which computes the rotations of the
+  /// Computes the last row and column of the Hessian, and adds to their common element: second
+  /// derivatives of `factor` times the row of d1, at least once by the last unknown (the twist psi
+  /// times twist_root). Call it after FrameHessian::add(), which computes the rotations of the
   /// end.
   void add_twist_hessian(const SpatialPoint& at, double factor, Eigen::MatrixXd& hessian) const;
   /// Computes the constraints' Jacobian for tilts out of the plane, one row per constraint.
@@ -87,7 +88,8 @@ class GripRows {
   [[nodiscard]] double gap(const Eigen::Matrix3Xd& tangents) const;
   /// Shifts the clamps' angles by multiples of 2 pi to the winding of a shape; in the plane.
   void unwrap(const Eigen::Ref<const Eigen::VectorXd>& x, double start_theta);
-  /// Sets the direction and d1 of the clamp at the end.
+  /// Sets d1 of the clamp at the end, for a span with prescribed end frames.
+  /// @param direction  direction of that clamp, which stays as it was in reset()
   void turn_end_clamp(const Eigen::Vector3d& direction, const Eigen::Vector3d& d1);
 
   /// Returns the torque of a grip.

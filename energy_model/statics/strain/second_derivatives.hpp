@@ -20,7 +20,8 @@ struct SecondDerivatives {
 }
 
 /// Returns the second derivatives at an equilibrium x that was found in another model of the same
-/// planar span. The multipliers mu minimise the residual of the gradient.
+/// span, which may be planar there and in space here. The multipliers mu minimise the residual of
+/// the gradient. In the plane the clamps' angles of `of` are shifted to the winding of the shape.
 [[nodiscard]] SecondDerivatives second_derivatives_at(SpanEnergy& of, const SpanEnergy& found_in,
                                                       const Eigen::VectorXd& x);
 

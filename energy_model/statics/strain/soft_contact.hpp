@@ -14,7 +14,7 @@ namespace dlo::energy_model {
 [[nodiscard]] bool is_on_ridge(const obstacle::Gap& gap);
 
 /// Contact of a span's quadrature nodes with its soft obstacles, which are one-sided springs: with
-/// the clearance d of a node, p = max(0, -k d) and the energy p^2 / 2k.
+/// the clearance d of a node, the force p = max(0, -k d) and the energy p^2 / 2k per length.
 class SoftContact : public Term {
  public:
   void reset(const TermSetup& setup);

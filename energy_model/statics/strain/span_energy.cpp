@@ -14,8 +14,9 @@ namespace dlo::energy_model {
 namespace {
 
 /// Returns the direction of a clamp at the start; without a clamp, a direction opposite to the
-/// force on the part of the span before the anchor. From that direction the two components of the
-/// start's rotation reach every direction; they become dependent only at the opposite direction.
+/// force on the part of the span before the anchor, or x if that force is zero. From that direction
+/// the two components of the start's rotation reach every direction; they become dependent only at
+/// the opposite direction.
 Eigen::Vector3d first_tangent(const Span& span) {
   if (span.start_direction) return *span.start_direction;
   const Eigen::Vector3d before = span.force_before(span.anchor);

@@ -21,16 +21,16 @@ namespace dlo::energy_model {
 
 /// Bending plus load energy of a span as a function of its unknowns, with constraints. The unknowns
 /// x in the plane are the tangent's angle at the start (if no clamp fixes it) and the curvature
-/// coefficients of every element; in space they are those of RodFrames. Bending energy is half the
-/// sum of the squares of the coefficients in both. If the end frames of a rod without material
-/// directors are prescribed, the last unknown is the angle psi of the rod's frame relative to
-/// Bishop's at the end, with whole turns, times (GJ / EI / length)^(1/2): its square is twice the
-/// twist energy. psi rotates the end's frame to that of its clamp. With material directors the
+/// coefficients of every element; in space they are those of RodFrames. The energy of the strains
+/// is half the sum of the squares of the coefficients in both. If the end frames of a rod without
+/// material directors are prescribed, the last unknown is the angle psi of the rod's frame relative
+/// to Bishop's at the end, with whole turns, times (GJ / EI / length)^(1/2): its square is twice
+/// the twist energy. psi rotates the end's frame to that of its clamp. With material directors the
 /// frames are the rod's own.
 ///
-/// L = E - sum mu . c: the multipliers mu are the forces (of positions) and torques (of end angles)
-/// that the grips exert on the rod. Without obstacles evaluate() and hessian() allocate nothing
-/// once a point has its size.
+/// L = E - sum mu . c: the multipliers mu are the forces (of positions) and torques (of directions)
+/// that the grips exert on the rod, and those of ContactRows. Without obstacles evaluate() and
+/// hessian() allocate nothing once a point has its size.
 class SpanEnergy {
  public:
   /// Terms of the energy besides that of strains.
@@ -54,8 +54,8 @@ class SpanEnergy {
   [[nodiscard]] int elements() const { return static_cast<int>(elements_.size()); }
   [[nodiscard]] double longest_element() const;
 
-  /// Returns the identifier of the model's present values. It changes with reset() and when a
-  /// clamp's angle changes.
+  /// Returns the identifier of the model's present values. It changes with reset() and
+  /// turn_end_clamp(), and in the plane with fit() and prolong(), which set the clamps' angles.
   [[nodiscard]] long revision() const { return revision_; }
   /// Computes energy, gradient and constraints at x.
   void evaluate(const Eigen::Ref<const Eigen::VectorXd>& x, SpanPoint& point) const;
@@ -79,13 +79,15 @@ class SpanEnergy {
   /// Arc lengths of the nodes.
   [[nodiscard]] const Eigen::VectorXd& nodes() const { return s_; }
   /// Returns the unknowns whose tangents (with material directors also frames) at the nodes come
-  /// nearest to the given ones; a planar span ignores components out of its plane. Also shifts the
-  /// clamps' angles to the winding of these tangents.
+  /// nearest to the given ones; a planar span ignores components out of its plane. The twist psi,
+  /// if it is an unknown, is that of the shape. In the plane the clamps' angles are shifted to the
+  /// winding of these tangents.
   /// @param most_steps  maximum number of fit steps in space, one evaluation each
   [[nodiscard]] Eigen::VectorXd fit(const StartShape& shape, int most_steps = most_fit_steps);
 
   /// Estimated energies of a shape given by tangents at the nodes, for a round rod that is
-  /// intrinsically straight, and the distance by which it misses the grips; computed without a fit.
+  /// uniform and intrinsically straight, and the distance by which it misses the grips; computed
+  /// without a fit. The energies of couples and soft obstacles are not included.
   struct Estimate {
     double energy = 0;
     double bending = 0;  // part of `energy`
@@ -94,7 +96,7 @@ class SpanEnergy {
   [[nodiscard]] Estimate estimate(const Eigen::Matrix3Xd& tangents) const;
 
   /// Returns the unknowns of a shape that was found with another number of coefficients, or in the
-  /// plane. Also shifts the clamps' angles to the winding of this shape.
+  /// plane. In the plane the clamps' angles are shifted to the winding of this shape.
   [[nodiscard]] Eigen::VectorXd prolong(const SpanEnergy& other, const Eigen::VectorXd& x);
 
   [[nodiscard]] const SpanUnknowns& unknowns() const { return unknowns_; }
@@ -113,10 +115,11 @@ class SpanEnergy {
   /// for a span without unknowns of twist, which is planar or has no material directors and no end
   /// rotation.
   [[nodiscard]] double twist(const Eigen::VectorXd& x) const;
-  /// Returns the torque of the clamp at the end about the tangent.
+  /// Returns the torque of the clamp at the end about the tangent; 0 without prescribed end frames.
   [[nodiscard]] double twisting_torque(const Eigen::VectorXd& x,
                                        const Eigen::VectorXd& multipliers) const;
-  /// Returns the unknowns with the given twist.
+  /// Returns the unknowns with the given twist, for a span with unknowns of twist. Without psi a
+  /// constant torque is added.
   [[nodiscard]] Eigen::VectorXd with_twist(Eigen::VectorXd x, double angle) const;
   /// Sets d1 of the clamp at the end, for a span with prescribed end frames.
   void turn_end_clamp(const Eigen::Vector3d& end_d1);
@@ -153,9 +156,9 @@ class SpanEnergy {
   }
 
   /// hold_torque() returns the torque of one of the span's grips beyond the first, start_torque()
-  /// that of the clamp at its start. Both are weak forms, from the directors' multipliers and from
-  /// the moment balance about the start. They converge with the energy; the curvature at the very
-  /// end converges only with its last coefficients.
+  /// that of the clamp at its start, 0 if there is none. Both are weak forms, from the directors'
+  /// multipliers and from the moment balance about the start. They converge with the energy; the
+  /// curvature at the very end converges only with its last coefficients.
   [[nodiscard]] Eigen::Vector3d hold_torque(SpanPoint& at, Eigen::Index hold,
                                             const Eigen::VectorXd& multipliers) const;
   [[nodiscard]] Eigen::Vector3d start_torque(SpanPoint& at,

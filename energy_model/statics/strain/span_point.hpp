@@ -29,7 +29,8 @@ struct SpanPoint {
   long revision = 0;
 
   // Scratch
-  Eigen::MatrixX3d carried;  // `force` plus the forces of grips and contacts
+  // `force` plus the forces of grips and contacts; SpanEnergy::hessian() negates it in space.
+  Eigen::MatrixX3d carried;
   Eigen::VectorXd along, by_unknown;
   std::vector<Eigen::Vector3d> couples;     // one per element
   std::vector<Eigen::Matrix3d> curvatures;  // one per element

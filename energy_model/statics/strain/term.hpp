@@ -30,7 +30,8 @@ struct TermSetup {
 struct Term {
   void reset(const TermSetup& setup) = delete;
   /// Adds the energy [EI/l] to at.energy, -dE/dt to at.force and dE/dx at fixed t to at.gradient.
-  /// -dE/dt at a node is its quadrature weight times the force on all that lies beyond it.
+  /// -dE/dt at a node is its quadrature weight times the force on all that lies beyond it, as seen
+  /// from the anchor; at nodes before the anchor with the opposite sign.
   void evaluate(SpanPoint& at) const = delete;
   /// Whether the energy is nonlinear in the tangents.
   [[nodiscard]] static bool is_curved() { return false; }
