@@ -24,7 +24,8 @@ void FrameHessian::resize(const RodFrames& frames) {
 }
 
 /// Computes later_curvatures_: the integral int_s^end A of f's second derivatives A by rotations of
-/// the panel's nodes, from each node to the panel's end. @return the sum of A over the panel
+/// the panel's nodes, from each node to the panel's end, times the node's quadrature weight.
+/// @return the sum of A over the panel
 Eigen::Matrix3d FrameHessian::gather_curvatures(const RodFrames& frames,
                                                 const RodFrames::Panel& panel,
                                                 const FrameGradient& f,
@@ -49,9 +50,10 @@ Eigen::Matrix3d FrameHessian::gather_curvatures(const RodFrames& frames,
   return sum;
 }
 
-/// Computes turns_, the rotation rate of a node by an unknown whose strain is 1 there, times the
-/// panel's length, and adjoints_, the derivative of f by that unknown after a rotation theta of the
-/// node, adjoint . theta: with M = state.moments and B = later_curvatures_ it is d x M / 2 + B d.
+/// Computes turns_, the rotation rate of a node by an unknown whose polynomial is 1 there, times
+/// the panel's length, and adjoints_, the derivative of f by that unknown after a rotation theta of
+/// the node, adjoint . theta, times the node's quadrature weight: with M = state.moments and B =
+/// later_curvatures_ it is d x M / 2 + B d.
 void FrameHessian::compute_rotation_rates(const RodFrames& frames, const RodFrames::Panel& panel,
                                           const RodFrames::State& state) {
   const Eigen::Index Q = panel.nodes();

@@ -24,8 +24,8 @@ void dot_in_plane(const Eigen::MatrixX3d& a, const Eigen::MatrixX3d& b, Eigen::V
 /// Tangents of a rod in the plane x-y as functions of its curvature; RodFrames is the counterpart
 /// in space.
 ///     t = (cos theta, sin theta, 0),  theta(s) = theta_0 + int_0^s (natural curvature + u) ds,
-/// where u is expanded in orthonormal Legendre polynomials on every element (Piece), so that its
-/// energy is half the sum of the squares of the coefficients. theta is linear in the unknowns.
+/// where u is expanded in orthonormal Legendre polynomials on every Element, so that its energy is
+/// half the sum of the squares of the coefficients. theta is linear in the unknowns.
 ///
 /// Unknowns x: the coefficients, element by element. If no clamp fixes the start, its angle is the
 /// first unknown.
@@ -45,7 +45,8 @@ class PlanarFrames {
   /// @param start_theta  angle at the start [rad]; std::nullopt: it is unknown
   void reset(const std::vector<Element>& elements, int terms, std::optional<double> start_theta,
              const NaturalStrains& natural);
-  /// Resizes a state; apart from tangent_jacobian() and fit(), nothing else allocates.
+  /// Resizes a state; with it evaluate(), adjoint(), add_hessian() and subtract_bending() allocate
+  /// nothing.
   void resize(State& state) const;
 
   /// Returns the angle at the start [rad]; 0 if it is unknown.
@@ -54,8 +55,9 @@ class PlanarFrames {
   [[nodiscard]] const Eigen::MatrixXd& by_unknown() const { return angle_; }
   /// Derivatives of the angle at an element's end by the unknowns.
   [[nodiscard]] Eigen::RowVectorXd angle_derivatives_after(Eigen::Index element) const;
-  /// Returns the angle of `direction` (the multiple of 2 pi nearest to the start's angle) minus the
-  /// stress-free shape's angle at an element's end [rad].
+  /// Returns the angle of `direction`, shifted by a multiple of 2 pi to be nearest to
+  /// start_theta(), minus the integral of the natural curvature from the start to an element's end
+  /// [rad].
   [[nodiscard]] double angle_towards(const Eigen::Vector3d& direction, Eigen::Index element) const;
 
   /// Computes the tangents and the state. @param[out] tangents  nodes x 3; z is not written
@@ -71,7 +73,7 @@ class PlanarFrames {
   /// @param along  one per node
   void add_hessian(const Eigen::VectorXd& along, State& state,
                    Eigen::Ref<Eigen::MatrixXd> hessian) const;
-  /// Derivatives of the tangents at the nodes by x: three matrices, one an axis, nodes x unknowns.
+  /// Derivatives of the tangents at the nodes by x: three matrices, one per axis, nodes x unknowns.
   [[nodiscard]] std::array<Eigen::MatrixXd, 3> tangent_jacobian(const State& state) const;
 
   /// Subtracts weight B u^2 from `along`: the amount by which bending reduces the energy of a
@@ -80,10 +82,10 @@ class PlanarFrames {
                         Eigen::VectorXd& along) const;
 
   /// Returns the angles of tangents at the nodes (3 x nodes), continuous along the rod, minus the
-  /// stress-free shape's [rad].
+  /// integral of the natural curvature from the start [rad].
   [[nodiscard]] Eigen::VectorXd angles(const Eigen::Matrix3Xd& tangents) const;
-  /// Returns the unknowns whose angles at the nodes come nearest to these, by least squares on each
-  /// element.
+  /// Returns the unknowns whose angles at the nodes, without the natural curvature, come nearest to
+  /// these, by least squares on each element.
   [[nodiscard]] Eigen::VectorXd fit(const Eigen::VectorXd& angles) const;
 
  private:

@@ -14,7 +14,8 @@ constexpr int free_start_terms = 1;
 
 /// Largest acceptable collocation defect, and limits of its correction. After Magnus steps two
 /// corrections suffice for all strains that the nodes resolve. For other strains a defect remains
-/// that no correction removes; it is recognised by exceeding the square of the previous defect.
+/// that no correction removes; it is recognised by exceeding `largest_square` times the square of
+/// the previous defect.
 constexpr double finest_defect = 2e-15;
 constexpr double largest_square = 10;  // ratio of a defect to the square of the previous one
 constexpr int most_corrections = 6;

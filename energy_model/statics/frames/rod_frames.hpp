@@ -23,9 +23,9 @@ struct FrameGradient {
 
 /// Directors of a rod in space as functions of its body strains,
 ///     R' = R hat(u),  R = (d1, d2, t),  u = natural strains + elastic strains.
-/// The elastic strains are expanded in orthonormal Legendre polynomials on every element (Piece),
-/// so that their energy is half the sum of the squares of the coefficients. This parametrisation
-/// has no poles.
+/// The elastic strains are expanded in orthonormal Legendre polynomials on every Element, so that
+/// their energy is half the sum of the squares of the coefficients. This parametrisation has no
+/// poles.
 ///
 /// A round rod that is intrinsically straight and whose grips leave the twist free needs two
 /// fields, u = (u1, u2, 0): d1 and d2 do not rotate about the tangent (Bishop's frame). Natural
@@ -96,7 +96,8 @@ class RodFrames {
   }
   /// Frame of the span's start, before the rotation of a free start.
   [[nodiscard]] const Eigen::Quaterniond& start() const { return start_; }
-  /// Natural strains at the nodes; empty with two fields.
+  /// Natural strains at the nodes of all panels, zero at those of a free start's rotation; empty
+  /// with two fields.
   [[nodiscard]] const Eigen::MatrixX3d& natural() const { return natural_; }
   /// Number of unknowns of one field.
   [[nodiscard]] Eigen::Index columns() const { return columns_; }
@@ -105,7 +106,7 @@ class RodFrames {
   /// Number of nodes of the elements.
   [[nodiscard]] Eigen::Index nodes() const { return nodes_ - turn_nodes_; }
 
-  /// Resizes a state; apart from tangent_jacobian(), nothing else allocates.
+  /// Resizes a state; with it no function except tangent_jacobian() allocates.
   void resize(State& state) const;
 
   /// Computes the directors by collocation at the nodes: fourth-order Magnus steps between
@@ -117,8 +118,8 @@ class RodFrames {
   void add_adjoint(const FrameGradient& f, double sense, State& state,
                    Eigen::Ref<Eigen::VectorXd> gradient) const;
 
-  /// Computes state.couples (t x g at the panel's nodes) and state.moments (rows of the panel), the
-  /// moment
+  /// Computes state.couples (t x g at the panel's nodes) and state.moments: at each node of the
+  /// panel its quadrature weight times the moment
   ///     M(s) = int_s^end t x dg
   /// by the discrete rule for rotations. @param later  sum of t x g and of f.couples beyond the
   /// panel

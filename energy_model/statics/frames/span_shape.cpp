@@ -19,8 +19,8 @@ struct PlacedElement {
   Element element;
   Eigen::Vector3d point = Eigen::Vector3d::Zero();  // position of its begin
   Eigen::Matrix3Xd tangent;                         // 3 x Q
-  double theta = 0;                                 // in the plane: the angle at its begin
-  Eigen::Matrix4Xd frame;                           // in space: quaternions w, x, y, z, 4 x Q
+  double theta = 0;        // in the plane: angle at its begin, without natural curvature
+  Eigen::Matrix4Xd frame;  // in space: quaternions w, x, y, z, 4 x Q
 };
 
 class Sampler {

@@ -11,9 +11,10 @@
 
 namespace dlo::energy_model {
 
-/// Divides a span into elements: at grips, loads and section changes, and where the boundary layers
-/// at the clamps of a soft rod and at the ends of its taut segments have decayed by exp(-6) and
-/// exp(-24), so that no element has to resolve a whole layer.
+/// Divides a span into elements: at kink_positions(), at the ends of Span::contacts, at
+/// Span::contact_ends and at Span::cuts. Without cuts it is divided where the boundary layers at
+/// the clamps of a soft rod, at the ends and loads of its taut segments and beside contacts have
+/// decayed by exp(-6) and exp(-24), so that no element has to resolve a whole layer.
 [[nodiscard]] std::vector<Element> elements_of(const Span& span);
 
 /// Smallest distance of two element boundaries; a shorter element could not have a curvature of its
@@ -31,8 +32,8 @@ void add_cut_beside(double origin, double sense, double layer, double room,
   return span.held_within(s, s, closest_cuts) != HeldBy::nothing;
 }
 
-/// Returns the arc lengths where strains may have kinks, ascending, each once: ends, grips, loads,
-/// ends of line loads and section changes.
+/// Returns the arc lengths where strains may have kinks, ascending: ends, grips, loads, ends of
+/// line loads and section changes. Of those closer than `closest_cuts` the first one is returned.
 [[nodiscard]] std::vector<double> kink_positions(const Span& span);
 
 /// Samples of a span's shape, in the span's units and frame.
@@ -41,7 +42,7 @@ struct SpanSamples {
   Eigen::Matrix3Xd tangents;
   Eigen::Matrix3Xd curvature;
   /// First directors of the rod's own frames or, without material directors, of Bishop's frames;
-  /// Span::first_d1() at the start.
+  /// Span::first_d1() at a clamped start. In the plane it is z.
   Eigen::Matrix3Xd d1;
 };
 
@@ -64,7 +65,8 @@ struct StartShape {
 using TangentField = std::function<StartShape(const Eigen::VectorXd&)>;
 
 /// Returns the angle of d1 relative to a frame that does not rotate about the tangents, from the
-/// first point on [rad]. Between two points the tangent must rotate by less than pi.
+/// first point on [rad]. Between two points the tangent must rotate by less than pi, and so must
+/// d1.
 [[nodiscard]] Eigen::VectorXd roll_of(const Eigen::Matrix3Xd& tangents, const Eigen::Matrix3Xd& d1);
 
 /// Shape of a span. In the plane it is the angle at the start and the Legendre coefficients of its
@@ -75,7 +77,7 @@ struct SpanShape {
   double anchor = 0;
   std::vector<Element> elements;
   double start_theta = 0;
-  Eigen::VectorXd theta;  ///< terms x pieces
+  Eigen::VectorXd theta;  ///< coefficients of u1, element by element
   Eigen::Matrix3d start_frame = Eigen::Matrix3d::Identity();
   bool free_start = false;
   Eigen::VectorXd strains;
