@@ -182,7 +182,8 @@ void ReducedHessian::solve(const Eigen::VectorXd& right, Eigen::VectorXd& step) 
 }
 
 /// Runs Lanczos' method on the inverse with full reorthogonalisation. It ends when the largest
-/// eigenvalue, which is computed at some of the steps, has changed by at most `settled` of itself.
+/// eigenvalue, which is computed at some of the steps, has changed by at most `settled` of itself,
+/// after `most_steps`, or when no new direction is found.
 ReducedHessian::Lanczos ReducedHessian::run_lanczos(double settled, Eigen::Index most_steps) {
   const auto is_time_to_check = [](Eigen::Index k) { return k == 4 || (k >= 8 && k % 6 == 2); };
   // A vector that orthogonalisation shortens by more than this factor is orthogonalised again: its

@@ -66,12 +66,13 @@ class ReducedHessian {
   /// @param[out] step  (x, mu); must not alias `right`
   void solve(const Eigen::VectorXd& right, Eigen::VectorXd& step);
 
-  /// Returns the smallest eigenvalue of Z^T H Z, overestimated by less than 1 %, which a
-  /// factorisation of the shifted matrix proves. Returns std::nullopt if Z^T H Z is not positive
-  /// definite or the proof fails.
+  /// Returns an estimate of the smallest eigenvalue of Z^T H Z. The eigenvalue is more than 0.99
+  /// of the estimate, which a factorisation of the shifted matrix proves. Returns std::nullopt if
+  /// Z^T H Z is not positive definite, no direction is free or the proof fails.
   [[nodiscard]] std::optional<double> smallest_eigenvalue_of_definite();
   /// Returns the unit eigenvector of the smallest eigenvalue in coordinates of the free directions,
-  /// converged. Returns std::nullopt if Z^T H Z is not positive definite.
+  /// converged or after 80 steps of Lanczos' method. Returns std::nullopt if Z^T H Z is not
+  /// positive definite or no direction is free.
   [[nodiscard]] std::optional<Eigen::VectorXd> lowest_mode_of_definite();
 
   /// H; only valid without constraints.
@@ -101,7 +102,7 @@ class ReducedHessian {
 
   Eigen::Index n_ = 0, constraints_ = 0;
   bool definite_ = false, independent_ = false;
-  Eigen::MatrixXd reflections_;  // v of 1 - tau v v^T, n x m, the first v_i of each zero
+  Eigen::MatrixXd reflections_;  // column i: v of 1 - tau v v^T, first i elements zero; n x m
   Eigen::VectorXd tau_, diagonal_;
   Eigen::MatrixXd triangle_;         // R above its diagonal
   Eigen::MatrixXd rotated_hessian_;  // Q^T H Q
@@ -114,9 +115,9 @@ class ReducedHessian {
 /// Magnitude below which an eigenvalue counts as zero.
 inline constexpr double zero_eigenvalue_limit = 1e-7;
 
-/// Returns the smallest eigenvalue of the reduced Hessian, overestimated by at most 1 %, as the
-/// only element if it is positive and exceeds `above`; otherwise all eigenvalues in ascending
-/// order. Returns an empty vector if the constraints leave no direction free.
+/// Returns smallest_eigenvalue_of_definite() as the only element if it exists and exceeds `above`;
+/// otherwise all eigenvalues of the reduced Hessian in ascending order. Returns an empty vector if
+/// the constraints leave no direction free.
 [[nodiscard]] Eigen::VectorXd smallest_eigenvalues(ReducedHessian& hessian, double above);
 
 /// Returns the eigenvector (in the unknowns, unit length) of the eigenvalue that is number `index`
