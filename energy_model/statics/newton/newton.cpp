@@ -133,7 +133,8 @@ void NewtonIteration::evaluate() {
   ++solution_.evaluations;
 }
 
-/// Computes the norm of the residual of gradient and constraints at the present point.
+/// Computes the norm of the residual of gradient and constraints at the present point, the latter
+/// multiplied by 1 + load. Also sets the solution's energy and buffers_.gradient.
 double NewtonIteration::residual() {
   const SpanPoint& here = *buffers_.here;
   solution_.energy = here.energy;

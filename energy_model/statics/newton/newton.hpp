@@ -63,8 +63,8 @@ class BroydenSteps {
   Eigen::Index count_ = 0;
 };
 
-/// Norm of the grips' forces, divided by 1 + weight and loads, above which a result is rejected:
-/// residuals are measured relative to the forces.
+/// Norm of the multipliers (forces and torques of grips and contacts), divided by 1 + weight and
+/// loads, above which a result is rejected: residuals are measured relative to the forces.
 inline constexpr double largest_grip_force = 1e10;
 
 /// Length of the next Newton step above which a residual that no longer decreases is not accepted
@@ -83,22 +83,23 @@ inline constexpr double loose_step_tolerance = 1e-5;
 enum class NewtonMethod {
   /// Converges to an equilibrium, stable or not. A factor of another shape serves the first steps
   /// only, and is replaced by the shape's own before the last ones. Between grips, an iteration
-  /// that fails is repeated with `corrector`.
+  /// that finds no equilibrium within the time limit is repeated with `corrector`.
   newton,
   /// Converges to an equilibrium near another shape, whose factor serves as the first one; between
-  /// grips. If it does not converge within a few steps it ends as `failed`, without a second
-  /// attempt and without least squares.
+  /// grips. If it does not converge within a few steps it ends as `failed` or `near_singular`,
+  /// without a second attempt. It takes no minimum-norm steps, except where only rounding is left.
   simplified,
-  /// Corrects one of many steps along a branch, with near-null modes deflated: steps have no
-  /// component along them, where rounding would determine the length.
+  /// Corrects one of many steps along a branch, and is the second attempt of `newton`. Near-null
+  /// modes are deflated: steps have no component along them, where rounding would determine the
+  /// length.
   corrector,
 };
 
 struct NewtonOptions {
   double load = 0;  ///< weight plus loads, the scale of the residuals
   NewtonMethod method = NewtonMethod::newton;
-  /// Length of the next step at which the iteration ends [rad], if the residual is at rounding or
-  /// as small as this.
+  /// Length of the next step at which the iteration ends [rad], if the residual is at rounding or,
+  /// divided by the scale of forces, at most this.
   double step_tolerance = default_step_tolerance;
   /// Factor of another shape for the first steps between grips; used if its numbers of unknowns and
   /// constraints are the same.
@@ -129,8 +130,9 @@ struct NewtonBuffers {
 /// shorter. Without constraints the Hessian at the end distinguishes a minimum (`converged`) from a
 /// `saddle`; with constraints the caller has to examine the second variation. The status is
 /// `near_singular` if the residual is at rounding but the step is not, and `failed` if the residual
-/// does not decrease. The solution keeps the last factor of its own, if there is one. Without
-/// constraints and obstacles nothing is allocated once the buffers have their size.
+/// does not decrease enough or the multipliers are too large (largest_grip_force). The solution
+/// keeps the last factor of its own, if there is one. Without constraints and obstacles nothing is
+/// allocated once the buffers have their size.
 void newton_solve(SpanSolution& solution, const NewtonOptions& options, NewtonBuffers& buffers);
 
 }  // namespace dlo::energy_model

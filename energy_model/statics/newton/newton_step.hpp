@@ -17,7 +17,7 @@ class NewtonStep {
   NewtonStep(SpanSolution& solution, const NewtonOptions& options, NewtonBuffers& buffers)
       : solution_(solution), options_(options), buffers_(buffers) {}
 
-  /// Uses the factor given in the options, if there is one.
+  /// Uses the factor given in the options, if there is one of the same size.
   void use_given_factor();
   /// Factors at the present solution.
   void factor();
@@ -50,9 +50,9 @@ class NewtonStep {
   [[nodiscard]] bool is_minimum() const {
     return solution_.model->constraints() == 0 && factor_->system.reduced_hessian().is_definite();
   }
-  /// Estimates the smallest eigenvalue of that Hessian by inverse iteration from a vector with
-  /// components along the low modes. The estimate is not below the smallest eigenvalue, and close
-  /// to it if that is far below the others.
+  /// Estimates the smallest eigenvalue of the factor's Hessian, for which is_minimum() holds, by
+  /// inverse iteration from a vector with components along the low modes. The estimate is not below
+  /// the smallest eigenvalue, and close to it if that is far below the others.
   [[nodiscard]] double smallest_eigenvalue();
 
  private:

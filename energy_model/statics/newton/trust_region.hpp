@@ -28,7 +28,8 @@ struct RestoreScratch {
 ///     -J^T (J J^T + mu)^-1 c.
 /// @param[in,out] point  evaluated
 /// @param most_energy    energy above which the search is abandoned
-/// @return whether the residual was reduced to `gap`
+/// @return whether the residual was reduced to `gap`; without constraints, whether the energy is
+///   finite
 [[nodiscard]] bool restore_constraints(
     SpanSolution& solution, SpanPoint& point, double gap, RestoreScratch& scratch,
     double most_energy = std::numeric_limits<double>::infinity());
@@ -48,7 +49,9 @@ struct TrustRegion {
 /// with mu = 0 or |p| between 0.75 and 1.01 of the radius. If the gradient has no component along
 /// the eigenvector of the smallest eigenvalue (the hard case), p is extended along that eigenvector
 /// to the radius.
-/// @return std::nullopt near a minimum, where all eigenvalues are above -neutral
+/// @return std::nullopt if no direction is free, and near a minimum: if H is positive definite and
+///   Newton's step is at most `least_step`, or if the gradient counts as zero and all eigenvalues
+///   are above -`zero_eigenvalue_limit`
 [[nodiscard]] std::optional<Eigen::VectorXd> trust_region_step(ReducedHessian& hessian,
                                                                const Eigen::VectorXd& gradient,
                                                                const TrustRegion& region);
@@ -59,13 +62,14 @@ inline constexpr double largest_radius = 8;
 
 struct TrustRegionOptions {
   double load = 0;  ///< weight plus loads, the scale of the gradient
-  /// Tolerance of the projected gradient, divided by 1 + load; > 0.
+  /// Tolerance of the projected gradient, divided by 1 + load; > 0. This, `nearest` and `radius`
+  /// are used by descend_in_trust_region() only.
   double gradient_tolerance = 0;
   /// Length of Newton's step up to which a minimum is close enough for Newton's method; used if the
   /// projected Hessian is positive definite.
   double nearest = 0;
-  double radius = first_radius;        ///< radius of the first step, in the unknowns; > 0
-  int max_iterations = 100;            ///< maximum number of steps, accepted or not
+  double radius = first_radius;  ///< radius of the first step, in the unknowns; > 0
+  int max_iterations = 100;      ///< maximum number of steps, accepted or not, of one minimisation
   const Deadline* deadline = nullptr;  ///< checked once per step; null: none
   /// Largest stiffness of a taut segment between grips [EI/l^3]; used by
   /// descend_by_augmented_lagrangian() only.
@@ -76,14 +80,15 @@ struct TrustRegionOptions {
 /// method in the null space of their Jacobian J, within a trust region,
 ///     min g.p + p.H p / 2,  |p| <= radius,  J p = 0.
 /// g and H belong to E - lambda.c, with the least-squares multipliers lambda. Each step is followed
-/// by Gauss-Newton steps that restore c = 0, to min(1e-5, |p|^2 / 100): a larger residual would
-/// spoil the comparison of energies. A step is accepted if it decreases E - lambda.c by at least a
-/// tenth of the prediction. A negative eigenvalue of H is followed to the region's boundary (Moré
-/// and Sorensen), so that the descent does not end on a saddle even from a symmetric start.
+/// by Gauss-Newton steps that restore c = 0, to min(1e-5, |p|^2 / 100), but at least 1e-13: a
+/// larger residual would spoil the comparison of energies. A step is accepted if it decreases E -
+/// lambda.c by at least a tenth of the prediction. A negative eigenvalue of H is followed to the
+/// region's boundary (Moré and Sorensen), so that the descent does not end on a saddle even from a
+/// symmetric start.
 ///
 /// Status `converged` means that the projected gradient is below its tolerance and H has no
-/// eigenvalue below -neutral, or that a minimum is within `nearest`. The multipliers are stored in
-/// the solution.
+/// eigenvalue below -`zero_eigenvalue_limit`, or that a minimum is within `nearest`. The
+/// multipliers are stored in the solution.
 void descend_in_trust_region(SpanSolution& solution, const TrustRegionOptions& options);
 
 /// Descends from solution.x to a point near a minimum of the energy under the constraints c = 0,
