@@ -36,8 +36,8 @@ constexpr double kantorovich_limit = 0.25;
 /// scale of forces: forces times angles of at most 1, those of positions counted three times.
 constexpr double largest_third_derivative = 4;
 
-/// Returns Newton's step of the coefficients; that of minimum norm, which has no component along
-/// near-null modes, if the system is too close to singular for another one.
+/// Returns Newton's step of the coefficients; if it is inaccurate or longer than
+/// `largest_next_step`, the step of minimum norm, which has no component along near-null modes.
 /// @param gradient  gradient of E - mu . c
 Eigen::VectorXd newton_step(NewtonSystem& system, const SpanPoint& point,
                             const Eigen::VectorXd& gradient) {
@@ -136,8 +136,9 @@ double measured_error(const SpanSolution& solution, const SpanPoint& point,
 
 /// Small eigenvalues of the second variation in some set of directions.
 struct SmallEigenvalues {
-  double smallest = 0;      // eigenvalue
-  double nearest_zero = 0;  // magnitude of the eigenvalue nearest to zero without rigid-body modes
+  double smallest = 0;  // smallest eigenvalue; 1 if there is none
+  // Magnitude of the eigenvalue nearest to zero without rigid-body modes; 1 if there is none.
+  double nearest_zero = 0;
   int neutral_directions = 0;  // number of neutral directions that are no rigid-body modes
   Eigen::Index zero = 0;       // number of rigid-body modes, or of zeros by rounding if larger
 };

@@ -14,8 +14,11 @@ class NewtonFactors;
 /// `zero_eigenvalue_limit` in a direction that is no rigid-body mode (rigid_body_modes.hpp). It
 /// also becomes `near_singular` if a positive eigenvalue might double or vanish within the error of
 /// the shape, as at a fold (Kantorovich's condition). The error is estimated in each case. If the
-/// residual is not small, or the grips' forces are too large, the result becomes `failed`. A failed
-/// solution stays unchanged. On return the solution's factor is that at solution.x.
+/// residual is not small, or the grips' forces are too large, the result becomes `failed`. A
+/// solution that is neither an equilibrium nor `near_singular` stays unchanged, and `near_singular`
+/// does not become `converged`. A shape through the middle of a soft obstacle becomes a `saddle`,
+/// one very near to it `near_singular` (classify_middle_passage()). Unless the result is `failed`,
+/// the solution's factor on return is that at solution.x.
 /// @param load  weight plus loads, the scale of the residuals
 void certify(SpanSolution& solution, double load, NewtonFactors& factors);
 

@@ -8,7 +8,7 @@
 namespace dlo::energy_model {
 namespace {
 
-/// Number of points at which a shape is sampled.
+/// Number of points at which a shape is sampled between two kinks.
 constexpr Eigen::Index shape_samples = 4096;
 
 /// A cause of bending that is confined to a length of its own.
@@ -17,7 +17,7 @@ struct BendingFeature {
   double length = 0;  // 0: a free end, where the rod is not bent
 };
 
-/// Returns the force that the rod carries at s, up to its sign.
+/// Returns the force of weight, loads and grips that the rod carries at s, up to its sign.
 Eigen::Vector3d internal_force_at(const SpanSolution& solution, double s) {
   const Span& span = solution.model->span();
   const Eigen::Index axes = span.planar ? 2 : 3;
@@ -90,7 +90,7 @@ constexpr Eigen::Index first_intervals = 400;
 constexpr double closest_contact_ends = 1e-7;
 
 /// Number of parts into which a bracket is divided repeatedly, and its final width, divided by the
-/// rod length.
+/// span's length.
 constexpr int bracket_parts = 32;
 constexpr double shortest_bracket = 1e-13;
 
@@ -98,11 +98,11 @@ constexpr double shortest_bracket = 1e-13;
 /// round edge the gradient is continuous.
 constexpr double least_jump = 1e-3;
 
-/// Distance from the core of a cylinder, divided by the rod length, below which its force changes
-/// its direction too fast for the nodes of a whole element.
+/// Distance from the core of a cylinder, divided by the span's length, below which its force
+/// changes its direction too fast for the nodes of a whole element.
 constexpr double near_core_distance = 0.05;
 
-/// An interval in which the contact state of the rod changes.
+/// An interval in which the contact state of the rod changes; of zero width beside a thin core.
 struct Bracket {
   std::size_t obstacle = 0;
   double begin = 0;

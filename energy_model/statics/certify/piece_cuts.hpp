@@ -31,8 +31,9 @@ namespace dlo::energy_model {
 [[nodiscard]] int terms_for_buckling_modes(const SpanSolution& solution);
 
 /// Returns the arc lengths, ascending, at which a shape begins and ceases to press into a soft
-/// obstacle, and at which it passes within it from one face, edge or corner to the next. The force
-/// per length has a kink at each of them.
+/// obstacle, and at which it passes within it from one face, edge or corner to the next, where the
+/// force per length has a kink. Also returns those at which it passes near the core of a cylinder,
+/// capsule or ball.
 [[nodiscard]] std::vector<double> contact_ends(const SpanSolution& solution);
 
 /// Returns a bound of the force error [in the span's units] of a shape's series whose elements may
@@ -44,7 +45,7 @@ namespace dlo::energy_model {
 enum class MiddlePassage {
   none,
   through_line,  ///< through the axis of a cylinder or capsule, or a ball's centre
-  on_ridge,      ///< in a plane of a box at equal distances from faces on both sides
+  on_ridge,      ///< planar, at equal distances from faces of a box on both sides of the plane
   near,          ///< so close to such a line that the series do not show the second variation
 };
 

@@ -31,14 +31,14 @@ struct RigidBodyModes {
 /// both ends, like a helix or a loop in the middle of a long rod: the shape may be anywhere along
 /// the rod with equal energy.
 /// @param hessian  at the shape
-/// @param rigid    number of rigid_body_modes()
+/// @param rigid    RigidBodyModes::in_plane of the shape
 [[nodiscard]] std::optional<Eigen::MatrixXd> sliding_modes(const SpanEnergy& model,
                                                            const Eigen::VectorXd& x,
                                                            ReducedHessian& hessian,
                                                            Eigen::Index rigid);
 
 /// Whether a rotation that keeps all prescribed vectors and forces maps one shape to the other, so
-/// that both belong to the same circle of equilibria.
+/// that both belong to the same circle of equilibria; false for a rod with material directors.
 /// @param a, b  points of both shapes at the same arc lengths, relative to the anchor, 3 x M
 [[nodiscard]] bool is_rotated_copy(const Span& span, const Eigen::Matrix3Xd& a,
                                    const Eigen::Matrix3Xd& b);
