@@ -18,11 +18,11 @@ namespace {
 constexpr Eigen::Index grid_points = 1001;
 /// Spacing, in grid points, of the points that are evaluated first.
 constexpr std::size_t coarse_stride = 20;
-/// Number of Newton steps that refine a minimum of the clearance, starting from a grid point. The
-/// steps stay between the neighbouring grid points.
+/// Maximum number of Newton steps that refine a minimum of the clearance, starting from a grid
+/// point. The steps stay between the neighbouring grid points.
 constexpr int newton_steps = 6;
 
-/// Number of additional points on each side of a contact's ends, each at half the distance of the
+/// Number of additional points beyond each end of a contact, each at half the distance of the
 /// one before. If a point contact should become a part in contact, the rod is within the obstacle
 /// next to it, closer than the grid resolves.
 constexpr int halvings_beside_contact = 10;
@@ -44,8 +44,8 @@ GapMinimum smallest_clearance(const Span::Obstacle& obstacle, const SpanShape& s
   return lowest;
 }
 
-/// Adds minima of the clearance below `below` on both sides of a contact's ends, closer than
-/// `reach`.
+/// Adds minima of the clearance below `below` beyond the ends of the obstacle's contacts, closer
+/// than `reach`.
 void add_minima_beside_contacts(const Span& span, const Span::Obstacle& obstacle,
                                 const SpanShape& shape, double below, double reach,
                                 std::vector<GapMinimum>& found) {
@@ -83,8 +83,9 @@ constexpr Eigen::Index penetration_grid = 2001;
 
 bool is_rigid(const Obstacle& obstacle) { return std::isinf(obstacle.stiffness); }
 
-/// Returns the largest depth of a shape within a body [m]. A body of small radius may lie between
-/// grid points; where the shape may be deeper there, it is sampled again 16 times as densely.
+/// Returns the largest depth of a shape within a body [m], negative if the shape is outside. A body
+/// of small radius may lie between grid points; where the shape may be deeper there than `enough`,
+/// it is sampled again 16 times as densely, at most four times.
 double depth_within(const obstacle::Body& body, const Equilibrium& shape, std::vector<double> s,
                     double h, const Samples& grid, double enough) {
   constexpr int subdivisions = 16;
@@ -137,7 +138,8 @@ std::vector<double> near_obstacles(const Problem& problem, const Equilibrium& sh
   return near;
 }
 
-/// Returns the largest depth within a rigid obstacle [m], and that obstacle.
+/// Returns the largest depth within a rigid obstacle [m], and that obstacle; the depth is 0 if the
+/// shape is outside all of them.
 Penetration penetration(const Problem& problem, const Equilibrium& shape) {
   const double h = problem.length / (penetration_grid - 1);
   const std::vector<double> s = near_obstacles(problem, shape);
@@ -155,17 +157,17 @@ Penetration penetration(const Problem& problem, const Equilibrium& shape) {
 
 /// Largest pull of an obstacle, divided by the scale of all forces, that counts as rounding.
 constexpr double tensile_tolerance = 1e-7;
-/// Length, divided by the rod length: a shorter part in contact becomes a point.
+/// Length, divided by the span's length: a shorter part in contact becomes a point.
 constexpr double shortest_part = 1e-6;
-/// Length, divided by the rod length. A contact is extended to include the point of largest depth
-/// if that is less than twice this length away, and by at most half of this length beyond it.
+/// Length, divided by the span's length. A contact is extended to include the point of largest
+/// depth if that is less than twice this length away, and by at most half of this length beyond it.
 constexpr double contact_extension = 0.01;
-/// Length between two contacts, divided by the rod length, and rise of the free part between them,
-/// divided by its length, below which both contacts are joined.
+/// Length between two contacts, divided by the span's length, and rise of the free part between
+/// them, divided by its length, below which both contacts are joined.
 constexpr double joining_gap = 0.02;
 constexpr double least_rise = 1e-3;
 
-/// Returns the largest clearance between two arc lengths.
+/// Returns the largest clearance at 15 points between two arc lengths.
 double highest(const SpanShape& shape, const Span::Obstacle& obstacle, double from, double to) {
   constexpr int samples = 16;
   std::vector<double> s;
@@ -193,7 +195,8 @@ class Contacts {
     release_tensile();
     join();
     has_changed_ = wrong_;
-    const double depth = resolution_ == Resolution::resolved ? contact_tolerance : coarse_contact_tolerance;
+    const double depth =
+        resolution_ == Resolution::resolved ? contact_tolerance : coarse_contact_tolerance;
     for (const GapMinimum& lowest : gap_minima(span_, shape_, -depth * span_.length)) {
       wrong_ = true;
       add(lowest);

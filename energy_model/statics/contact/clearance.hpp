@@ -26,7 +26,7 @@ struct Clearance {
 /// (`stride` grid intervals) that has a clearance of at most `most` at one of its ends. The
 /// clearance changes along a rod by no more than the arc length; all other points therefore have a
 /// clearance above `most` minus half a coarse interval.
-/// @param s           arc lengths of the grid, equally spaced
+/// @param s           arc lengths of the grid, equally spaced, a multiple of `stride` intervals
 /// @param clearances  returns the smallest clearance at each of the given arc lengths
 [[nodiscard]] std::vector<std::size_t> points_near_obstacle(
     const std::vector<double>& s, std::size_t stride, double most,
@@ -40,14 +40,15 @@ struct GapMinimum {
   int feature = 0;  ///< feature of the body (face, edge, corner) nearest to the point
 };
 
-/// Returns every local minimum of the clearance along the rod that is below `below`, ends included,
-/// by ascending s. The minima of a dense grid are refined. Points at grips count.
+/// Returns the local minima of the clearances from each rigid obstacle along the rod that are below
+/// `below`, ends included, by ascending s. They are searched for on a dense grid and, more densely,
+/// beside contacts, and then refined. Points at grips count.
 [[nodiscard]] std::vector<GapMinimum> gap_minima(const Span& span, const SpanShape& shape,
                                                  double below);
 
 /// Depth of a shape within rigid obstacles.
 struct Penetration {
-  double depth = 0;          ///< largest depth [m]
+  double depth = 0;          ///< largest depth [m]; 0 if the shape is outside
   std::size_t obstacle = 0;  ///< index in the problem of the obstacle with that depth
 };
 
@@ -58,10 +59,10 @@ struct Penetration {
 /// @param[in,out] equilibrium  status, message and penetration
 Penetration judge_penetration(const Problem& problem, Equilibrium& equilibrium);
 
-/// Largest depth within a rigid obstacle of a shape that counts as on it, divided by the rod
+/// Largest depth within a rigid obstacle of a shape that counts as on it, divided by the span's
 /// length: rounding.
 inline constexpr double contact_tolerance = 1e-9;
-/// Largest depth, likewise, while coefficients may be missing.
+/// Largest depth, divided by the span's length, while coefficients may be missing.
 inline constexpr double coarse_contact_tolerance = 1e-6;
 
 /// Whether a shape has all coefficients that it needs; before that the pressure on a part is not
@@ -73,11 +74,11 @@ enum class Resolution {
 
 /// Checks whether the contacts are those of an equilibrium: no obstacle pulls (concentrated forces
 /// and pressures are above -1e-7 of all forces), and no point is deeper within an obstacle
-/// than `contact_tolerance` rod lengths (`coarse_contact_tolerance` unless resolved).
+/// than `contact_tolerance` span lengths (`coarse_contact_tolerance` unless resolved).
 /// @return std::nullopt if so; otherwise the contacts to try next: points that pull are released,
 ///   parts that pull at an end or are too short become a point, parts that pull between their ends
-///   become two points, contacts that meet are joined, and contacts are added where the rod is
-///   within an obstacle
+///   become one or two points, contacts that meet are joined, and contacts are added or extended
+///   where the rod is within an obstacle
 [[nodiscard]] std::optional<std::vector<Span::Contact>> updated_contacts(
     const SpanSolution& solution, double load, Resolution resolution);
 

@@ -35,7 +35,7 @@ struct PathInterval {
   Eigen::Vector3d to;      ///< position of the other grip, if there is one
 };
 
-/// Points that the rod passes, in order from Reach::from.
+/// Points that the rod passes, in order from PathInterval::from.
 using PathPoints = std::vector<Eigen::Vector3d>;
 
 std::vector<PathInterval> path_intervals(const Span& span) {
@@ -85,8 +85,9 @@ double half_size(const obstacle::Body& body, const Eigen::Vector3d& direction) {
 
 /// Returns a unit direction normal to the path; the body may be passed on that side and on the
 /// opposite one. The direction lies in the plane of a planar span, is normal to the axis of an
-/// endless body, and otherwise lies in the plane of the loads. Returns std::nullopt if the body is
-/// endless along the path or on two axes.
+/// endless body, and otherwise lies in the plane of the loads, or is arbitrary if these have no
+/// component across the path. Returns std::nullopt if the body is endless along the path or on two
+/// axes.
 std::optional<Eigen::Vector3d> side_of_path(const Span& span, const obstacle::Body& body,
                                             const Eigen::Vector3d& along) {
   std::vector<Eigen::Vector3d> infinite_axes;
@@ -183,7 +184,7 @@ class PinnedSpans {
   }
 
   /// Adds a copy of the span for each choice of the sides on which an interval passes the bodies.
-  /// Paths through an obstacle are omitted, and so are copies beyond most_spans.
+  /// Paths with a point in a rigid obstacle are omitted, and so are copies beyond most_spans.
   /// @param row    one or two bodies, in any order
   /// @param reach  the interval
   void add_spans_past(std::vector<const obstacle::Body*> row, const PathInterval& reach) {

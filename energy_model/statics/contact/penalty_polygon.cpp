@@ -15,7 +15,8 @@ constexpr double fewest_segments = 64;
 constexpr double most_segments = 256;
 /// Ratio of Segments::few to Segments::all.
 constexpr double segment_share = 1.0 / 3;
-/// Stretch and penetration under the loads and bending forces, divided by the rod length.
+/// Stretch and penetration under the loads and bending forces, divided by the rod length, and scale
+/// of the bending forces [EI/l^2].
 constexpr double penalty_compliance = 1e-4;
 constexpr double penalty_force_scale = 40;
 /// Number of neighbouring segments on an obstacle from which they count as a part in contact
@@ -186,7 +187,7 @@ class PenaltyRelaxation {
     return result;
   }
 
-  /// Returns the mean length of a segment.
+  /// Returns about the mean length of a segment.
   [[nodiscard]] double segment() const {
     return span_.length / static_cast<double>(mesh_.s.size());
   }

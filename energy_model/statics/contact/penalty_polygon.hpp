@@ -55,8 +55,8 @@ enum class Descent {
 
 /// Minimises from a shape the energy of a polygon whose points the obstacles push out by stiff
 /// springs and whose stretch is small. The error is about the square of a segment. If the shape
-/// passes through the core of a block, which would push it out of several faces at once, the block
-/// is replaced by a ball that changes into the block in stages.
+/// passes through the core of a block, which would push it out of several faces at once, each rigid
+/// body is replaced by a ball that changes into the body in stages.
 [[nodiscard]] PenaltyPolygon relax_on_obstacles(const Span& span, const TangentField& start,
                                                 Segments segments, const Deadline& deadline,
                                                 Descent descent = Descent::far);
