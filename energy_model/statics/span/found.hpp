@@ -70,13 +70,16 @@ inline constexpr const char* no_equilibrium_of_class =
 
 /// Whether the frames along an equilibrium belong to the homotopy class that clamps with these
 /// turns prescribe; sets solution.missing_turns. Always true for a round straight rod, whose search
-/// prescribes the turns itself, and if the turns are unknown.
+/// prescribes the turns itself, for a solution that is no equilibrium, and if the turns are
+/// unknown.
 [[nodiscard]] bool belongs_to_class(SpanSolution& solution, const std::optional<double>& turns);
 
 /// Returns a list of one solution. A braced list would copy it.
 [[nodiscard]] std::vector<SpanSolution> as_list(SpanSolution solution);
 
-/// Whether two equilibria of one span are equal up to rounding and, in space, rigid-body motion.
+/// Whether two equilibria of one span have the same energy and, up to rigid-body motion in space,
+/// the same points at three arc lengths.
+/// @param tolerance  largest difference of points, divided by the span's length
 [[nodiscard]] bool is_same_shape(const SpanSolution& a, const SpanSolution& b,
                                  double tolerance = equal_points_tolerance);
 

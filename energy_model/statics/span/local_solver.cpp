@@ -170,7 +170,8 @@ SpanSolution LocalSolver::newton_from(const TangentField& field) {
 
 /// Prolongs the known shape's unknowns to this model: for an intrinsically straight rod in space
 /// these are nearly the same if its grips have hardly moved, unless its start frame has rotated
-/// about the tangent. @return whether the result has nearly the wanted tangents
+/// about the tangent. @return whether the result has nearly the wanted tangents; false if the known
+/// shape's model does not correspond to this one
 bool LocalSolver::prolong_known(const StartShape& wanted, SpanSolution& solution) const {
   constexpr double near_tangent_tolerance = 0.2;  // largest difference of tangents
   const KnownShape& known = options_.start.known;

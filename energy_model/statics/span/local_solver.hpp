@@ -25,7 +25,7 @@ struct SpanTraits {
   bool adapted;  ///< whether the mesh is adapted to a known shape
   double longest_element = 0;
   int natural_terms = 0;  ///< number of coefficients needed for natural strains and couples
-  bool taut = false;      ///< whether elements end where layers at taut segments' ends have decayed
+  bool taut = false;      ///< whether a segment between grips is taut
   double stiffness = 0;   ///< largest stiffness of a taut segment along its chord [EI/l^3]
 };
 
@@ -33,7 +33,8 @@ struct SpanTraits {
 /// then occupy about half a gigabyte, and a step of Newton's method takes about a second.
 inline constexpr int most_model_unknowns = 2400;
 
-/// Smallest number of coefficients of an element, per strain, with which a model is made.
+/// Number of coefficients of an element, per strain, that has to be affordable if the caller
+/// chooses none.
 inline constexpr int least_model_terms = 9;
 
 /// Returns the largest affordable number of coefficients per strain and element, at least one.
@@ -82,7 +83,8 @@ class LocalSolver {
   [[nodiscard]] const SpanTraits& traits() const { return traits_; }
   [[nodiscard]] bool out_of_time() const { return options_.deadline.passed(); }
 
-  /// Returns the number of coefficients that the load needs or the caller has chosen.
+  /// Returns the number of coefficients that the load needs, as far as it is affordable, or that
+  /// the caller has chosen.
   [[nodiscard]] int terms() const;
   /// Returns the number of coefficients for a descent; Newton's method follows with all of them.
   [[nodiscard]] int coarse_terms() const;
@@ -102,7 +104,7 @@ class LocalSolver {
   /// its coefficients.
   void descend(SpanSolution& solution);
   /// Descends from solution.x by the method of multipliers, also from a shape from which the
-  /// constraints cannot be restored; then runs Newton's method.
+  /// constraints cannot be restored; if that succeeds, Newton's method follows.
   void descend_to_constraints(SpanSolution& solution) const;
 
  private:

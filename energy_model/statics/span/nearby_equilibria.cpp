@@ -57,7 +57,8 @@ bool is_followed(const SpanSolution& solution, const SpanStart& start) {
 }
 
 /// Solves again from a start near which Newton's method has found nothing, on an adapted mesh for
-/// the start's own shape, and by descent if necessary.
+/// the start's own shape, and by descent if necessary. Returns std::nullopt for a known shape, a
+/// span without other grips, if the mesh cannot be adapted, and if no equilibrium is found.
 std::optional<SpanSolution> start_on_adapted_mesh(const LocalSolver& on) {
   const SpanStart& start = on.options().start;
   if (start.known.model || on.span().holds.empty()) return std::nullopt;

@@ -16,7 +16,8 @@ struct NegativeCurvature {
 };
 
 /// Returns the eigenvector of the smallest eigenvalue: in the span's plane if it is negative there,
-/// otherwise out of the plane. Returns std::nullopt if the equilibrium is stable.
+/// otherwise out of the plane. Returns std::nullopt if no eigenvalue is negative in the directions
+/// that the span allows.
 [[nodiscard]] std::optional<NegativeCurvature> negative_curvature(const SpanSolution& solution);
 
 /// Returns the unit eigenvector of the eigenvalue of the reduced second variation that is nearest
@@ -41,9 +42,10 @@ void search_between(const SpanOptions& options, SpanWorkspace& workspace, Found&
 void search_adjacent(const SpanOptions& options, SpanWorkspace& workspace, Found& found);
 
 /// Solves for the equilibrium near SpanOptions::start and certifies it, by Newton's method or by
-/// descent as the start requests, and by the other method if that fails. A saddle is
-/// replaced by the equilibrium below it, if that is stable, in two cases: only a descent is allowed
-/// (Approach::descend_only), or the start is a known shape and not Approach::follow_only.
+/// descent as the start requests, and by the other method if the result is unstable or far from a
+/// known shape, except for Approach::follow_only. A saddle is replaced by the equilibrium below it,
+/// if that is stable, in two cases: only a descent is allowed (Approach::descend_only), or the
+/// start is a known shape and not Approach::follow_only.
 [[nodiscard]] SpanSolution solve_from_given_start(const Span& span, const SpanOptions& options,
                                                   SpanWorkspace& workspace);
 

@@ -13,7 +13,8 @@ namespace dlo::energy_model {
 
 class SearchLog;
 
-/// Largest number of unknowns of Newton's method, which factors a dense matrix of this size.
+/// Number of unknowns up to which coefficients are added in general: Newton's method factors a
+/// dense matrix of this size.
 inline constexpr int most_unknowns = 480;
 
 /// Method by which an equilibrium is sought from a given start.
@@ -31,7 +32,7 @@ struct KnownShape {
   Eigen::VectorXd multipliers;
   std::shared_ptr<NewtonFactor> factor = nullptr;  ///< factor at that shape; null: none is known
 
-  /// Number of coefficients that resolve the shape.
+  /// Number of coefficients that resolve the shape; 0 if nothing is known.
   [[nodiscard]] int terms() const { return model ? model->terms() : 0; }
 };
 

@@ -70,7 +70,7 @@ constexpr std::size_t followed_starts_beside_obstacles = 6;
 /// as one.
 constexpr double same_coarse_points = 10 * loose_step_tolerance;
 
-/// Maximum number of unstable equilibria from which a descent is started.
+/// Number of equilibria, in the order of discovery, of which the unstable ones start a descent.
 constexpr std::size_t most_saddles = 8;
 
 constexpr const char* saddle_descent_strategy = "unstable equilibria, followed downhill";
@@ -85,8 +85,8 @@ std::string starts_of(const Span& span) {
 }
 
 /// Solves for the lowest shape of a plain cantilever that is pulled in one direction; it is not
-/// certified out of the plane. Newton's method is tried first. If it converges to another shape, a
-/// descent follows from the soft limit.
+/// certified out of the plane. Newton's method is tried first. If it fails or converges to another
+/// shape, a descent follows from the soft limit.
 SpanSolution plain_cantilever(LocalSolver& on) {
   SpanSolution at_once = on.empty_solution(on.terms());
   if (on.traits().load < soft_limit_load) {

@@ -32,7 +32,7 @@ Eigen::Vector3d across(const Span& span, const Eigen::Vector3d& direction) {
 }
 
 /// Returns the tangent, at a distance from a clamp or grip with tangent `from`, of a soft rod that
-/// bends towards the force. @param turns  additional whole turns beyond the shorter way
+/// bends towards the force. @param turns  0: by the shorter way; 1: by the longer way
 Eigen::Vector3d pendulum(const Span& span, const Eigen::Vector3d& from,
                          const Eigen::Vector3d& force, double distance, int turns) {
   const double size = force.norm();
@@ -203,7 +203,8 @@ TangentField field(Tangent tangent) {
 
 /// Returns a shape from a clamp down onto an obstacle and along it. It reaches the obstacle over
 /// (72 EI h / w)^(1/4), as a rod of small slopes does under its weight w from the height h. Returns
-/// std::nullopt if the rod does not reach the obstacle.
+/// std::nullopt if the obstacle is not a half-space, if the load does not press the rod onto it, if
+/// the clamp is nearly normal to it, or if the rod does not reach it.
 std::optional<TangentField> field_on_obstacle(const Span& span, const Span::Obstacle& obstacle) {
   if (!obstacle.body.is_half_space()) return {};
   const Eigen::Vector3d normal = obstacle.body.normal();

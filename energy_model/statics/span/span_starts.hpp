@@ -8,14 +8,16 @@
 namespace dlo::energy_model {
 
 /// Returns initial guesses for a span's equilibria, chosen by physical limits. With one clamp they
-/// are the pendulum's profile from the clamp's direction to the load's, by the shorter and the
-/// longer way, and shapes that come down onto an obstacle and lie along it. Between grips they are
-/// arches and S-shapes of the right slack to both sides, and loops. Of each pair the one that the
-/// load favours comes first.
+/// are shapes that come down onto a half-space and lie along it, the pendulum's profile from the
+/// clamp's direction to the load's, by the shorter and the longer way, and the straight rod.
+/// Between grips they are arches and S-shapes of the right slack to both sides, and loops if there
+/// are two grips and slack. Of each pair of arches the one that the load favours comes first.
+/// @param span  has to outlive the result
 [[nodiscard]] std::vector<TangentField> start_fields(const Span& span);
 
 /// Returns the pendulum's profile 4 atan(tan(psi/4) exp(-sqrt(n) s)) from a clamp towards the sum n
 /// of weight and loads by the shorter way: the limit shape of a soft rod.
+/// @param span  has to outlive the result
 [[nodiscard]] TangentField soft_limit_field(const Span& span);
 
 /// Returns a shape through the anchor and the other grips of a span: arches of the right slack that
@@ -24,10 +26,11 @@ namespace dlo::energy_model {
 [[nodiscard]] TangentField arch_field(const Span& span);
 
 /// Returns initial guesses for a rod with material directors: the stress-free shape, and the
-/// shapes of start_fields(), in space each with the rod's frame rotated evenly along the rod, to
-/// several angles. If the frame at the end is prescribed too, the shapes of start_fields() with
+/// shapes of start_fields(), in space each also with the rod's frame rotated evenly along the rod,
+/// to several angles. If the frame at the end is prescribed too, the shapes of start_fields() with
 /// frames that are rotated evenly until they meet it, by the two angles of the class of
-/// Span::Twist::turns that are nearest to zero.
+/// Span::Twist::turns that are nearest to zero; shapes without a writhe are omitted.
+/// @param span  has to outlive the result
 [[nodiscard]] std::vector<TangentField> natural_fields(const Span& span);
 
 }  // namespace dlo::energy_model
