@@ -24,7 +24,7 @@ constexpr int many_unknowns = 300;
 /// First trust-region radius of a descent near soft obstacles: a longer step (roughly in rad) would
 /// take the rod to their other side.
 constexpr double careful_radius = 0.05;
-/// Length, divided by the rod length, below which a part in contact becomes a point; the next
+/// Length, divided by the span's length, below which a part in contact becomes a point; the next
 /// update checks whether the rod is within the obstacle next to it.
 constexpr double shortest_contact_part = 1e-3;
 
@@ -49,6 +49,7 @@ bool meets_free_boundaries(const SpanSolution& solution) {
 }
 
 /// Solves for the equilibrium with the known contacts, by Newton's method from the known shape.
+/// Returns an empty solution if the known shape has another number of elements.
 SpanSolution solve_near_known(const Span& span, const SpanOptions& options,
                               SpanWorkspace& workspace) {
   const KnownShape& known = options.start.known;

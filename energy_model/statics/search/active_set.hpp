@@ -9,8 +9,8 @@ namespace dlo::energy_model {
 /// Finds the contacts of an equilibrium by an active-set method. Each round runs Newton's method
 /// with given contacts, moves their ends to where the rod lifts off (free_boundary_newton()),
 /// releases contacts that pull, and adds contacts where the rod is within an obstacle
-/// (updated_contacts()). It ends when nothing is released or added. It applies to all rods,
-/// including those that clamps twist.
+/// (updated_contacts()). It ends when nothing is released or added, or as
+/// not_verified after 16 rounds. It applies to all rods, including those that clamps twist.
 class ActiveSet {
  public:
   /// All arguments have to outlive the object.
@@ -68,6 +68,7 @@ class ActiveSet {
 /// Solves for the equilibrium near a known one (SpanOptions::start) of a span whose grips or
 /// obstacles have moved a little: Newton's method with its contacts from that shape, then updates
 /// by ActiveSet. There is no search. The result is `followed` if it is stable or a singular point.
+/// It is no equilibrium if an obstacle of a contact has disappeared or the shape has changed a lot.
 [[nodiscard]] SpanSolution follow_contacts(const Span& searched, const SpanOptions& options,
                                            SpanWorkspace& workspace);
 

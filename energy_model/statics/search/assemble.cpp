@@ -113,7 +113,7 @@ std::vector<GripContactForce> grip_contact_forces(const SpanSolution& solution,
 }
 
 /// Returns the contacts of a span, with arc lengths in m, and forces and moments in the span's
-/// units.
+/// units and the axes of space.
 std::vector<ContactPart> contacts_of(const PlacedSpan& place, const SpanSolution& solution,
                                      const std::vector<ContactForce>& forces, double length) {
   std::vector<ContactPart> parts;

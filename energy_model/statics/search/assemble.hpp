@@ -27,7 +27,8 @@ struct PlacedShape {
 [[nodiscard]] PlacedShape placed_shape(const PlacedSpan& placed, const SpanSolution& solution,
                                        double length);
 
-/// Samples the rod at arc lengths; with d1 if all of its shapes have `ahead`.
+/// Samples the rod at arc lengths [m]; with d1 if its first shape has `ahead`.
+/// @param length  of the rod [m]
 [[nodiscard]] Samples sample(const std::vector<PlacedShape>& shapes, double length,
                              std::span<const double> arc_lengths);
 

@@ -9,8 +9,8 @@ namespace dlo::energy_model {
 /// (PenaltyPolygon) determines the initial contacts. The rod's shape is then found with these
 /// contacts, whose ends are unknowns (FreeBoundary), and the contacts are updated until the rod is
 /// not within an obstacle and no obstacle pulls. `converged` means that certify() and
-/// updated_contacts() confirm this and that the contacts end where the rod lifts off. Otherwise the
-/// best shape is not_verified. The list is never empty.
+/// updated_contacts() confirm this and that the contacts end where the rod lifts off. If the
+/// contacts do not converge, the shape is not_verified. The list is never empty.
 [[nodiscard]] std::vector<SpanSolution> solve_touching_span(const Span& span,
                                                             const SpanOptions& options,
                                                             SpanWorkspace& workspace);

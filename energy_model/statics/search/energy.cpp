@@ -73,8 +73,8 @@ std::vector<Equilibrium> combine(const Problem& problem, const std::vector<Place
   return result;
 }
 
-/// Returns the total energies of the combinations of the spans' stable equilibria, lowest first
-/// [J].
+/// Returns the total energies of the combinations of the spans' stable equilibria, lowest first, at
+/// most `most_combinations` [J].
 /// @param lowest  the combination of the spans' first equilibria
 std::vector<double> stable_energies(const Problem& problem, const Equilibrium& lowest,
                                     const std::vector<std::vector<SpanSolution>>& solutions) {
@@ -186,6 +186,7 @@ class EnergySolver::State {
   /// Solves with one obstacle of each set of similar ones. If the rod enters an omitted obstacle,
   /// that one replaces the obstacles similar to it in the next attempt.
   /// @return empty if no obstacle was omitted, or if the result is not certified with all obstacles
+  ///   although there was time
   std::vector<Equilibrium> solve_without_similar_obstacles(const Problem& problem,
                                                            const std::vector<PlacedSpan>& placed,
                                                            Request wanted, From from,

@@ -21,7 +21,7 @@ constexpr int most_boundary_steps = 25;
 constexpr int updates_per_derivative = 8;
 /// Maximum number of times that a step without an equilibrium is divided by 4.
 constexpr int most_step_divisions = 3;
-/// Step of the ends, divided by the rod length, below which they have converged.
+/// Step of the ends, divided by the span's length, below which they have converged.
 constexpr double converged_step = 1e-10;
 /// Largest residual (in the measures of free_boundary.hpp, which are at least the step) that counts
 /// as zero. A remaining curvature at a lift-off is a moment there. The contact has to balance it
@@ -29,8 +29,8 @@ constexpr double converged_step = 1e-10;
 constexpr double zero_residual = 1e-12;
 /// Residual below which steps that do not halve it count as rounding.
 constexpr double small_residual = 1e-10;
-/// Longest step, divided by the rod length (the polygon has already located the ends), and divided
-/// by the free distance on that side.
+/// Longest step, divided by the span's length (the polygon has already located the ends), and
+/// divided by the free distance on that side.
 constexpr double longest_step = 0.02;
 constexpr double largest_room_share = 0.45;
 /// Step of the finite differences, divided by the free distance.
@@ -109,7 +109,7 @@ class FreeBoundaryNewton {
   }
 
   /// Moves the free ends of contact and solves for the equilibrium there.
-  /// @param[in,out] way  displacements of the ends; shortened if it leads to no equilibrium
+  /// @param[in,out] displacement  of the ends; shortened if it leads to no equilibrium
   /// @return whether an equilibrium was found
   [[nodiscard]] bool move(Eigen::VectorXd& displacement) {
     const Eigen::VectorXd whole = displacement;

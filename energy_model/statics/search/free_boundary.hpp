@@ -20,30 +20,31 @@ struct FreeBoundary {
   void move(Span& span, double way) const;
 };
 
-/// Returns all free boundaries of a span, by ascending s.
+/// Returns the free boundaries of a span, by ascending s: ends of its contacts that are neither at
+/// a grip nor at an end of the span.
 [[nodiscard]] std::vector<FreeBoundary> free_boundaries(const Span& span);
 
 /// Returns the residual at each free boundary. For a sliding contact at one point it is the
-/// distance along the rod to the point of smallest clearance. For a point contact that does not
-/// slide it is the slope of the clearance times the shorter distance to the next grip, contact or
-/// end of the rod; the slope divided by the curvature would be 0 / 0 where the rod begins to lie on
-/// the obstacle. For a part in contact it is the second derivative of the clearance times the
-/// length of the adjacent free interval.
+/// arc length of the boundary minus that of the point of smallest clearance. For a point contact
+/// that does not slide it is the slope of the clearance times the shorter distance to the next
+/// grip, contact or end of the rod; the slope divided by the curvature would be 0 / 0 where the rod
+/// begins to lie on the obstacle. For a part in contact it is the second derivative of the
+/// clearance times the length of the adjacent free interval.
 [[nodiscard]] Eigen::VectorXd free_boundary_residual(const SpanSolution& solution,
                                                      const std::vector<FreeBoundary>& ends);
 
-/// Distances by which a free boundary may move down and up without passing a grip, an end or
-/// another contact.
+/// Distances by which a free boundary may move down and up without passing a grip, an end of the
+/// span, another contact or the other end of its own.
 struct MoveLimits {
   double down = 0, up = 0;
 };
 [[nodiscard]] MoveLimits move_limits(const Span& span, const FreeBoundary& end);
 
 /// Solves the free-boundary problem of lift-off: moves the ends of a solution's contacts until the
-/// free-boundary residual (FreeBoundary) is zero, by Newton's method with finite differences, each
-/// of which needs an equilibrium of its own, followed by Broyden updates. The energy is stationary
-/// in the ends, so that the error of the shape is the square of theirs. Ends that do not converge
-/// stay at their last positions.
+/// residual (free_boundary_residual()) is zero, by Newton's method with finite differences, each of
+/// which needs an equilibrium of its own, followed by Broyden updates. The energy is stationary in
+/// the ends, so that the error of the shape is the square of theirs. Ends that do not converge stay
+/// at their last positions.
 /// @param[in,out] solution  an equilibrium with its contacts
 /// @return number of energy evaluations
 int free_boundary_newton(SpanSolution& solution, const Deadline& deadline,

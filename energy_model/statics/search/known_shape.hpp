@@ -15,18 +15,20 @@ struct PlacedSolution {
   SpanSolution solution;
 };
 
-/// Returns a shape along points as an initial guess. Its tangents are those of chords between
-/// points at least a sixty-fourth of the rod apart, so that scatter across the rod tilts them
-/// little. Beyond the first and the last point it is straight.
+/// Returns a shape along points as an initial guess; only its tangents are set. They are
+/// interpolated between those of chords between points at least a sixty-fourth of the rod apart
+/// (except for the last chord), so that scatter across the rod tilts them little. Beyond the middle
+/// of the first and the last chord the shape is straight.
 /// @param arc_lengths  of the points [m], ascending, two or more;  @param points  [m], 3 x M
 /// @param length  of the rod [m]
-/// @throws std::invalid_argument if a value is out of range, or if all points coincide
+/// @throws std::invalid_argument if a value is out of range or not finite, if the numbers of points
+///   and arc lengths differ, or if all points coincide
 [[nodiscard]] Equilibrium shape_through(const std::vector<double>& arc_lengths,
                                         const Eigen::Ref<const Eigen::Matrix3Xd>& points,
                                         double length);
 
-/// Returns the tangents of an equilibrium in a span's frame; both arguments have to outlive the
-/// result.
+/// Returns the tangents of an equilibrium in a span's frame, and the roll of a rod with material
+/// directors. `start` and `placed` have to outlive the result.
 [[nodiscard]] TangentField field_of(const Equilibrium& start, const PlacedSpan& placed,
                                     double length);
 
@@ -40,8 +42,9 @@ struct PlacedSolution {
                                                         const PlacedSpan& placed, double length);
 
 /// Returns the spans of a problem at a known equilibrium, all in space, so that they bend out of
-/// their plane too. Each is solved by Newton's method from its shape.
+/// their plane too, and without rigid obstacles. Each is solved again from its shape.
 /// @param terms  number of coefficients of each element
+/// @throws std::invalid_argument if a span has more unknowns than affordable
 [[nodiscard]] std::vector<PlacedSolution> spans_in_space(const Problem& problem,
                                                          const Equilibrium& known, int terms,
                                                          const Deadline& deadline,

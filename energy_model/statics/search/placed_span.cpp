@@ -195,7 +195,7 @@ class TwistedSpan {
   }
 
   /// Solves from a shape without a known twist: relaxes a polygon with the prescribed turns from
-  /// it, then runs Newton's method.
+  /// it (not for a rod with material directors), then runs Newton's method.
   [[nodiscard]] SpanSolution relax_from(const Equilibrium& shape) const {
     const TangentField field = field_of(shape, placed_, problem_.length);
     Span span = placed_.span;
@@ -249,7 +249,7 @@ class TwistedSpan {
   }
 
   /// Rotates each stable shape without twist until it meets the frame. For a rod with material
-  /// directors, also adds results of a search with the prescribed frame.
+  /// directors and no rigid obstacles, also adds results of a search with the prescribed frame.
   [[nodiscard]] std::vector<SpanSolution> turned(const std::vector<SpanSolution>& untwisted) const {
     Found found(options_);
     const HeldFrames held = frames_with_turns_of(untwisted.front());

@@ -12,7 +12,8 @@
 
 namespace dlo::energy_model {
 
-/// A span's last solution, from which the next one may start; empty after a failure.
+/// A span's last solution, from which the next one may start; empty unless it was stable or a
+/// singular point.
 struct RememberedShape {
   KnownShape last;
   std::shared_ptr<const SpanPoint> point;               ///< point of `last`
@@ -34,9 +35,11 @@ struct Remembered {
   double turned = 0;  ///< rotation of the end's frame relative to the untwisted rod's [rad]
 };
 
-/// Solves a span of a problem without the twist from clamps: from a known shape, if there is one;
-/// otherwise by a search, and from minima of coarse polygons if the search finds no stable shape,
-/// or all are wanted. The list is never empty, best first.
+/// Solves a span of a problem without the twist from clamps: from a known shape, if there is one
+/// and not all equilibria are wanted; otherwise, and if that finds none, by a search. It also
+/// starts from minima of coarse polygons if the search finds no stable shape (unless it has reached
+/// a limit), or if all equilibria are wanted. Approach::follow_only and Approach::descend_only
+/// exclude the search. The list is never empty, best first.
 /// @param shape, last  initial guesses; `shape` is used unless it is null, then `last` if known
 [[nodiscard]] std::vector<SpanSolution> solve_untwisted(const PlacedSpan& placed,
                                                         const Problem& problem, SpanOptions options,
@@ -45,8 +48,8 @@ struct Remembered {
                                                         SpanWorkspace& workspace);
 
 /// Solves a span between clamps that prescribe frames: from a shape whose twist is known, if there
-/// is one; otherwise without twist, after which the clamp is rotated from each stable shape found.
-/// The list is never empty, best first.
+/// is one; otherwise without twist, after which the clamp is rotated from the best shape, or from
+/// each stable one if all equilibria are wanted. The list is never empty, best first.
 /// @param start  null: none is known
 /// @param memory  of the last call, empty if nothing is to be followed; the shape without twist is
 ///   updated

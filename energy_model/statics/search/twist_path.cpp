@@ -48,7 +48,7 @@ constexpr double least_stiff_eigenvalue = 1e-2;
 /// Maximum number of branch jumps; without a limit each could lead to the next.
 constexpr int most_branch_jumps = 60;
 
-/// Displacement along the unstable direction, and number of times that it is increased.
+/// First displacement along the unstable direction, and number of displacements that are tried.
 constexpr double first_displacement = 0.1;
 constexpr int most_displacements = 4;
 
@@ -153,8 +153,8 @@ class TwistPath {
     solution.model->turn_end_clamp(about * first_d1_);
   }
 
-  /// Solves for the equilibrium near the extrapolation of the last two; std::nullopt if it is not
-  /// on the same branch.
+  /// Solves for the equilibrium near the extrapolation of the last two; std::nullopt if none is
+  /// found, or if it is not on the same branch.
   [[nodiscard]] std::optional<SpanSolution> continuation_step(double turn) {
     SpanSolution next = here_;
     rotate_clamp(next, angle_ + turn);

@@ -16,7 +16,8 @@ struct EndFrame {
 /// A shape of a span without prescribed twist, planar or not.
 struct UntwistedShape {
   const SpanSolution& solution;
-  /// d1 at the end, transported without twist from Span::first_d1() at the start
+  /// d1 at the end of the frame that has Span::first_d1() at the start: the rod's own frame for a
+  /// rod with material directors, otherwise one transported without twist.
   Eigen::Vector3d end_d1;
   double twist;  ///< twist of a rod with material directors; else 0 [rad]
   std::optional<Writhe> writhe;
@@ -34,7 +35,7 @@ struct UntwistedShape {
 /// Rotates the end of a stable shape in small steps until it meets the frame, by the angle nearest
 /// to `frame.twist`, as a gripper would. Each step is solved by Newton's method from the
 /// extrapolation of the last two shapes. If the shape has become unstable or the branch has ended,
-/// a descent leads to the next stable one. The result is certified, or `failed` or `time_limit`
+/// a descent leads to the next stable one. The result is certified, or `time_limit`, or `failed`
 /// with the angle that was reached.
 /// @param span       without twist
 /// @param stiffness  GJ / EI
@@ -42,7 +43,8 @@ struct UntwistedShape {
                                     const UntwistedShape& untwisted, const SpanOptions& options,
                                     SpanWorkspace& workspace);
 
-/// Solves for the equilibrium near a known twisted shape, given by its tangents and its twist.
+/// Solves for the equilibrium near a known twisted shape, given by its tangents and its twist. The
+/// result is certified if Newton's method converges.
 [[nodiscard]] SpanSolution twist_from(const TangentField& field, const EndFrame& frame,
                                       const Span& span, double stiffness,
                                       const SpanOptions& options, SpanWorkspace& workspace);
