@@ -87,8 +87,9 @@ struct TrustRegionOptions {
 /// symmetric start.
 ///
 /// Status `converged` means that the projected gradient is below its tolerance and H has no
-/// eigenvalue below -`zero_eigenvalue_limit`, or that a minimum is within `nearest`. The
-/// multipliers are stored in the solution.
+/// eigenvalue below -`zero_eigenvalue_limit`, or that a minimum is within `nearest`. If the steps
+/// or the radius have ended before, the status is `roundoff_limited`. The multipliers are stored in
+/// the solution.
 void descend_in_trust_region(SpanSolution& solution, const TrustRegionOptions& options);
 
 /// Descends from solution.x to a point near a minimum of the energy under the constraints c = 0,
@@ -99,7 +100,8 @@ void descend_in_trust_region(SpanSolution& solution, const TrustRegionOptions& o
 /// constraints, all of them close to straight. Restoring c = 0 from another shape fails there;
 /// penalty springs that become stiffer do not.
 ///
-/// Status `converged` means that |c| and the gradient are small enough for Newton's method on both.
+/// Status `converged` means that |c| is small enough for Newton's method, after a minimisation that
+/// ended at a small gradient or at its smallest radius.
 void descend_by_augmented_lagrangian(SpanSolution& solution, const TrustRegionOptions& options);
 
 }  // namespace dlo::energy_model

@@ -11,7 +11,7 @@ namespace dlo::energy_model {
 /// are shapes that come down onto a half-space and lie along it, the pendulum's profile from the
 /// clamp's direction to the load's, by the shorter and the longer way, and the straight rod.
 /// Between grips they are arches and S-shapes of the right slack to both sides, and loops if there
-/// are two grips and slack. Of each pair of arches the one that the load favours comes first.
+/// are two grips and slack. Of each pair of arches the one that the weight favours comes first.
 /// @param span  has to outlive the result
 [[nodiscard]] std::vector<TangentField> start_fields(const Span& span);
 
@@ -21,7 +21,7 @@ namespace dlo::energy_model {
 [[nodiscard]] TangentField soft_limit_field(const Span& span);
 
 /// Returns a shape through the anchor and the other grips of a span: arches of the right slack that
-/// hang in the direction of the load, and beyond the outermost grips the pendulum's profile.
+/// hang in the direction of the weight, and beyond the outermost grips the pendulum's profile.
 /// @param span  has to outlive the result
 [[nodiscard]] TangentField arch_field(const Span& span);
 

@@ -20,8 +20,9 @@ struct [[nodiscard]] SpanSolution {
   double residual = -1;  ///< norm of the residual of gradient and constraints
   /// Norm of the Newton step from x that would come next: an estimate of the error of x.
   double next_step = std::numeric_limits<double>::infinity();
-  /// Magnitude of the eigenvalue of the last Newton factor nearest to zero, or a slight
-  /// overestimate. Rounding and truncation errors are divided by it. NaN: not computed.
+  /// Magnitude of the eigenvalue of the last Newton factor nearest to zero, or an overestimate;
+  /// after certify() without rigid-body modes and overestimated by at most about 1 %. Rounding and
+  /// truncation errors are divided by it. NaN: not computed.
   double eigenvalue_nearest_zero = std::numeric_limits<double>::quiet_NaN();
   /// Estimated distance of the shape from an equilibrium, divided by the length; NaN: unknown.
   double error = std::numeric_limits<double>::quiet_NaN();
@@ -32,8 +33,9 @@ struct [[nodiscard]] SpanSolution {
   /// Smallest eigenvalue of the reduced Hessian, including directions out of the plane; NaN: not
   /// computed.
   double smallest_eigenvalue = std::numeric_limits<double>::quiet_NaN();
-  /// Number of eigenvalues that are zero to the tolerance, without rigid-body modes; near_singular
-  /// if > 0.
+  /// Number of eigenvalues that are zero to the tolerance, without rigid-body modes; at least 1 if
+  /// the shape may be at a fold or passes very near to a soft obstacle's middle. An equilibrium
+  /// becomes near_singular if it is > 0, unless it is a saddle.
   int neutral_directions = 0;
   /// Result of missing_turns() for an intrinsically curved rod with both end frames prescribed.
   int missing_turns = 0;
