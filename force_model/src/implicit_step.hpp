@@ -34,7 +34,7 @@ class ImplicitStep {
   /// Returns the RMS movement of the points in the last step [m].
   [[nodiscard]] double movement() const { return movement_rms_; }
   /// Returns the RMS movement that the present velocities still cause [m]; infinite without
-  /// damping.
+  /// damping, 0 without masses.
   [[nodiscard]] double momentum() const;
 
  private:
@@ -68,7 +68,7 @@ class ImplicitStep {
   std::vector<char> is_free_;
   bool in_plane_ = false;
   double unit_ = 0;         // approximate stiffness of the slowest mode [N/m]
-  double energy_unit_ = 0;  // approximate magnitude of energies: EI / l plus the loads times l [J]
+  double energy_unit_ = 0;  // magnitude of energies: unit_ times l^2 plus the loads times l [J]
   double time_step_ = 0;
   double damping_rate_ = 0;
   Eigen::VectorXd inertia_;  // m (1 + c dt) / dt^2 [N/m]; empty without time

@@ -27,9 +27,10 @@ class ModeEstimate {
   ModeEstimate(const Rod& rod, const Eigen::Matrix3Xd& points);
 
   /// Updates the modes after a block of steps.
-  /// @param inner_mode    bound of the fastest mode of contraction and bending [N/m]
+  /// @param inner_mode    bound of the fastest mode of contraction, bending and twist [N/m]
   /// @param force_change  -dF.dP of the block [N m]
-  /// @param point_change  dP.dP of the block [m^2]. The changes of the first call are ignored.
+  /// @param point_change  dP.dP of the block [m^2]. The changes of the first call, and of
+  /// the first after another function below, are ignored.
   void update(double inner_mode, double force_change, double point_change);
 
   /// Updates the bounds after a change of the rod's walls. The next update starts a new block, and

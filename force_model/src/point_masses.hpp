@@ -18,7 +18,8 @@ void for_each_held_point(const Rod& rod, const Action& action) {
   }
 }
 
-/// Checks the masses of a rod. @throws std::invalid_argument unless each free point has a mass > 0
+/// Checks the masses of a rod. @throws std::invalid_argument unless there is one per point, > 0 for
+/// each free point
 void require_masses(const Rod& rod, const std::vector<char>& is_free);
 
 }  // namespace dlo::force_model

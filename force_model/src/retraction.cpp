@@ -12,8 +12,9 @@ namespace {
 constexpr int most_corrections = 4;
 /// Relative accuracy of the lengths.
 constexpr double length_tolerance = 1e-13;
-/// Added to the diagonal of J J^T, which is 2. If a part between two anchors is straight, no
-/// movement changes all its lengths equally; the corresponding y is then suppressed.
+/// Added to the diagonal of J J^T, which is 1 next to an anchor and else 2. If a part between two
+/// anchors is straight, no movement changes all its lengths equally; the corresponding y is then
+/// suppressed.
 constexpr double straight_share = 1e-9;
 /// Smallest factor by which one movement may shorten a segment.
 constexpr double least_length_factor = 0.1;

@@ -65,7 +65,7 @@ struct ProposedStep {
 /// Results of a measurement of the modes, see mode_bounds and ModeEstimate.
 struct ModeMeasurement {
   PerLane contraction;   ///< largest 4 c_c / L [N/m]
-  PerLane bending;       ///< largest (16 M' + 4 M) / L^2 [N/m]
+  PerLane bending;       ///< largest (16 M' + 4 M + 4 |natural couple|) / L^2 [N/m]
   PerLane force_change;  ///< -dF.dP since the last measurement [N m]
   PerLane point_change;  ///< dP.dP since the last measurement [m^2]
 };
@@ -89,8 +89,8 @@ struct StepKernel {
   void (*compute_forces)(const PointBlock& block, PointArray applied, PerLane& regular);
   /// Compares positions and forces with those of the last measurement and replaces the latter.
   void (*measure_modes)(const PointBlock& block, ModeMeasurement& measured);
-  /// Computes proposals = c_F forces + kept * those of the last step, compared with their
-  /// neighbours (18).
+  /// Computes proposals = c_F forces + momentum_factor * those of the last step, each compared with
+  /// that of the next point (18).
   /// @param turn  set of proposals of this step, 0 or 1; the other is the last step's
   /// @param rounding_squared  a point reverses its direction if the scalar product of its proposals
   /// is below minus this [m^2]

@@ -36,7 +36,8 @@ class StiffnessFactor {
   [[nodiscard]] bool is_positive() const;
   /// Returns K^-1 times each column.
   [[nodiscard]] Eigen::MatrixXd solve(const Eigen::MatrixXd& right) const;
-  /// Returns a direction d of negative curvature, d^T K d < 0; empty if there is none.
+  /// Returns a direction d of negative curvature, d^T K d < 0; empty if there is none. If K has
+  /// columns B, K must not be positive definite, and d is an estimate of its lowest mode.
   [[nodiscard]] Eigen::VectorXd negative_curvature(const BorderedMatrix& K) const;
 
  private:

@@ -17,7 +17,7 @@ inline constexpr double folded_joint_threshold = 1e-12;
 /// beginning; null if there is none.
 [[nodiscard]] const Grip* next_framed_grip(const Rod& rod, const Grip* after);
 
-/// Returns the part of the rod between two such grips.
+/// Returns the part of the rod between two such grips. @param number  its index in Twist::angles
 [[nodiscard]] TwistedSpan make_twisted_span(const Rod& rod, const Grip& first, const Grip& last,
                                             Eigen::Index number);
 

@@ -10,7 +10,7 @@ namespace dlo::force_model {
 /// Computes the steps of Integration::verlet. Only the constructor allocates.
 class VerletStep {
  public:
-  /// @throws std::invalid_argument if a free point has no mass
+  /// @throws std::invalid_argument unless there is a mass per point, > 0 for each free point
   VerletStep(const Rod& rod, const StepOptions& options);
 
   /// Makes a step. @param forces  forces on the free points, 0 on rigidly held ones [N]

@@ -45,7 +45,8 @@ namespace dlo::compare {
 void add_twisting_torques(const force_model::Rod& rod, const Eigen::Matrix3Xd& points,
                           std::vector<GripperLoad>& grippers);
 
-/// Returns twist, writhe and held turns of each part between two frames. Twist and writhe add up to
+/// Returns twist, writhe and held turns of the parts between two frames for which writhe and held
+/// turns can be determined. Twist and writhe add up to
 /// the turns between the frames (Calugareanu, White, Fuller). No motion changes this sum unless the
 /// rod passes through itself, which changes it by two.
 [[nodiscard]] std::vector<Linking> linking_of(const Scene& scene,

@@ -26,8 +26,8 @@ inline constexpr double same_shape_tolerance = 1e-4;
 inline constexpr double nearest_shape_tolerance = same_shape_tolerance / 2;
 
 /// Returns the equilibrium that a search from the points of a shape finds (reference_near),
-/// whatever its status; std::nullopt if the scene's reference_model() is not energy, since no other
-/// model searches.
+/// whatever its status; std::nullopt if the shape has fewer than two points, or if the scene's
+/// reference_model() is not energy, since no other model searches.
 /// @param shape   in the scene's frame
 [[nodiscard]] std::optional<energy_model::Equilibrium> equilibrium_near(
     const Scene& scene, const Shape& shape, const SolveOptions& options);

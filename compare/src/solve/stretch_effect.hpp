@@ -33,8 +33,9 @@ struct StretchedRod {
                                                const SolveOptions& options);
 
 /// Solves a scene as solve_reference(), and decides Stretch::automatic: the shape without stretch
-/// is solved, and the shape with stretch if stretch matters and the model has it. No other function
-/// makes this decision.
+/// is solved, and the shape with stretch if stretch matters and the model has it. If grips hold the
+/// rod taut and the model has stretch, only the latter is solved. No other function makes this
+/// decision.
 /// @throws InputError, ConvergenceError in the cases of solve_reference()
 [[nodiscard]] StretchedRod decide_stretch(const Scene& scene, Model model,
                                           const SolveOptions& options);

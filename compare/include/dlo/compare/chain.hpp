@@ -7,8 +7,8 @@
 namespace dlo::compare {
 
 /// Finds the polygon of minimal energy. With one clamp at an end, forces in a plane and no obstacle
-/// its segments are rigid; else they have the force model's c_c, and the lowest of the shapes from
-/// several starts is returned.
+/// its segments are rigid, unless that polygon is unstable out of the plane. Else they have the
+/// force model's c_c, and the lowest of the shapes from all starts is returned.
 /// @throws InputError; ConvergenceError, also if a segment differs from its rest length by more
 /// than largest_strain(); the message then recommends more points
 [[nodiscard]] Solution solve_chain(const Scene& scene, const ForceModelSettings& settings,

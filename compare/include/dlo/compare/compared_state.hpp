@@ -8,7 +8,8 @@ namespace dlo::compare {
 
 /// An equilibrium of the energy model that was not compared.
 struct UncomparedEquilibrium {
-  /// Whether its second variation is positive; also true if its stability is not verified.
+  /// Whether its second variation is positive; also true if its stability is not verified or if it
+  /// is near singular.
   bool stable = false;
   /// Energy of this equilibrium minus that of the compared one [J].
   double energy_difference_J = 0;

@@ -31,8 +31,8 @@ struct Bending {
 /// @param segment_length  mean rest length of its two segments [m]
 [[nodiscard]] double natural_moment(const Bending& bending, Eigen::Index i, double segment_length);
 
-/// Checks bending parameters. @throws std::invalid_argument if a number is out of range, or if a
-/// vector does not have one entry per joint
+/// Checks bending parameters. @throws std::invalid_argument if a number is out of range, if a
+/// vector neither is empty nor has one entry per joint, or if the paper's law has natural angles
 void check(const Bending& bending, Eigen::Index segments);
 
 /// Returns the moment of one joint [N m] at the joint angle `alpha` [rad], 0 <= alpha <= pi.
@@ -56,7 +56,8 @@ void check(const Bending& bending, Eigen::Index segments);
 ///
 /// With k = 2 (EI/L) / (1 + u.v), a and b the two segments:
 ///     hooke:  P_{i+1}: k/|b| (u - (u.v) v)   P_{i-1}: -k/|a| (v - (u.v) u)   P_i: minus the sum
-/// Net force and net torque are zero for any segments. What a natural turn adds, z the unit
+/// up to hooke_fold_angle; beyond it the forces have the same directions and the moment of that
+/// angle. Net force and net torque are zero for any segments. What a natural turn adds, z the unit
 /// vector along +z:
 ///     P_{i+1}: M(alpha_0)/|b| z x v   P_{i-1}: M(alpha_0)/|a| z x u   P_i: minus the sum
 ///

@@ -13,7 +13,7 @@ enum class InstructionSet {
   avx512,    ///< x86-64 with AVX-512 F, DQ and VL: eight numbers at a time
 };
 
-/// Returns the name of an instruction set.
+/// Returns the name of an instruction set for people: "baseline", "AVX2" or "AVX-512".
 [[nodiscard]] const char* to_string(InstructionSet set);
 
 /// Returns the sets that this machine can run, the fastest last.

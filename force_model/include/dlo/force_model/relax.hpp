@@ -10,17 +10,17 @@ struct RelaxOptions {
   /// Tolerance: the simulation is at rest when the RMS distance of the points from the rest shape,
   /// bounded by Newton steps, is below this fraction of the rod's length [-], > 0.
   double tolerance = 1e-7;
-  long max_steps = 2'000'000;                                   ///< largest number of steps
+  long max_steps = 2'000'000;  ///< number of steps or linear solves after which the search ends
   double time_limit = std::numeric_limits<double>::infinity();  ///< largest computing time [s], > 0
   bool (*interrupted)() =
-      nullptr;  ///< called at intervals of steps; true ends the search like the time limit
+      nullptr;  ///< called at intervals of steps; true ends the search as time_limit does
 };
 
 /// Way in which a search for rest ended.
 enum class RelaxStatus {
   diverged,    ///< a step was not finite
   step_limit,  ///< RelaxOptions::max_steps
-  time_limit,  ///< RelaxOptions::time_limit
+  time_limit,  ///< RelaxOptions::time_limit, or `interrupted` returned true
   at_rest,     ///< proved
   stalled,     ///< implicit steps only: no step lowers the energy, but rest is not proved
 };
@@ -31,10 +31,11 @@ enum class RelaxStatus {
 /// Result of a search for rest.
 struct [[nodiscard]] RelaxResult {
   RelaxStatus status = RelaxStatus::diverged;  ///< how it ended
-  std::string message = "never ran";           ///< the status in words
-  long steps = 0;                              ///< steps of this call
-  double residual_force = -1;                  ///< largest force on a free point [N]
-  /// RMS distance of the points from the rest shape [m]; a bound if at rest, else an estimate.
+  std::string message = "never ran";           ///< the status in words, with any neutral modes
+  long steps = 0;              ///< steps of this call; of implicit steps the linear solves
+  double residual_force = -1;  ///< largest force on a free point [N]; -1: never measured
+  /// RMS distance of the points from the rest shape [m]: a bound if at rest, else an estimate. If
+  /// there is none, as at an unstable shape, it is the remaining momentum. -1: never measured.
   double remaining_error = -1;
 };
 

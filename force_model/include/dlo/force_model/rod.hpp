@@ -39,7 +39,8 @@ struct Rod {
 [[nodiscard]] bool is_planar(const Rod& rod);
 
 /// Checks a rod. If two or more grips hold frames, the law must be hooke, the joints between them
-/// must have torsional and bending stiffnesses > 0, and there must be no natural angles.
+/// must have torsional and bending stiffnesses > 0, and there must be no natural angles. A rod with
+/// natural angles must be planar.
 /// @throws std::invalid_argument naming the first member that is out of range
 void check(const Rod& rod);
 

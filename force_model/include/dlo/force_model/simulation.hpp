@@ -35,7 +35,7 @@ class Simulation {
 
   /// Runs the catch-up loop of Text 1: makes steps until the sum of c_m has grown by `steps`. A
   /// force thus corresponds to a displacement per second even while movements are scaled down.
-  /// @param steps  nominal steps, > 0; @param max_steps  largest number of evaluations
+  /// @param steps  nominal steps, > 0; @param max_steps  largest number of steps
   /// @return the result of the last step (c_m = 0 if none was due); `diverged` if one diverged,
   /// `behind` if max_steps did not suffice: remaining_steps() then remain for the next call
   [[nodiscard]] StepResult advance(double steps, long max_steps = 10'000'000);
@@ -53,7 +53,8 @@ class Simulation {
   RelaxResult relax(const RelaxOptions& options = {});
 
   /// Moves a gripper; a frame that it holds follows by the smallest rotation of its segment.
-  /// @throws std::invalid_argument if the grip or the shape does not exist
+  /// @throws std::invalid_argument if there is no such grip, if the targets are not one finite
+  /// position per held point, or if they move a rod with natural angles out of the plane z = 0
   void move_grip(std::size_t grip, const Eigen::Ref<const Eigen::Matrix3Xd>& targets,
                  const Eigen::Vector3d& reference);
   /// Moves and rotates a gripper that holds the rod's frame. Full rotations are counted from call
@@ -67,7 +68,8 @@ class Simulation {
 
   /// Replaces a wall, without a check of the resulting change of the rod. A wall that is to appear
   /// later has stiffness 0 until then. Automatic steps are adapted to it from the next step on.
-  /// @throws std::invalid_argument if there is no such wall or the new one is out of range
+  /// @throws std::invalid_argument if there is no such wall, if the new one is out of range, or if
+  /// its normal leaves the plane z = 0 of a rod with natural angles
   void move_wall(std::size_t wall, const Wall& moved);
 
   /// Returns the rod with moved grips and walls, and the twist of the last step in Twist::angles.

@@ -10,7 +10,7 @@ namespace dlo::force_model {
 /// of the total forces by the positions of the free points.
 struct ModeBounds {
   double fastest = 0;  ///< upper bound for this shape
-  double slowest = 0;  ///< estimate, > 0
+  double slowest = 0;  ///< estimate, > 0 if `fastest` is
 };
 
 /// Smallest accepted ratio of the slowest mode to the fastest. Heavy-ball steps keep 1 - 4
@@ -30,7 +30,8 @@ inline constexpr double smallest_mode_ratio = 1e-15;
 /// `slowest` is the first mode of a straight clamped-free rod of this length and these points,
 /// (1.8751 / l)^4 EI L, L the mean rest length and EI that of the softest joint. For the paper's
 /// law EI is M L / alpha, alpha the angle of that joint at the moment M = (sum of all |load|) l/2,
-/// but at most its moment at 3 rad.
+/// but at most its moment at 3 rad. The result is limited to smallest_mode_ratio fastest ..
+/// fastest.
 /// @param points  [m], 3 x rod.points()
 /// @throws std::invalid_argument if a shape or number is out of range
 [[nodiscard]] ModeBounds mode_bounds(const Rod& rod,

@@ -6,12 +6,12 @@
 
 namespace dlo::force_model {
 
-/// Variants of one simulation step: five of the paper and three of dlo. The paper's build on each
-/// other.
+/// Variants of one simulation step. `basic` to `dynamic` and the idea of `verlet` are the paper's,
+/// `automatic` and `implicit` are dlo's.
 enum class Stepper {
   basic,      ///< dP = c_F F (Formula 7)
-  limited,    ///< and no point moves further than l_s (Formulas 16, 17)
-  relative,   ///< and no point moves further than l_s against its neighbour (Formula 18)
+  limited,    ///< `basic` with damping c_s, and no point moves further than l_s (Formulas 16, 17)
+  relative,   ///< as `limited`, but l_s limits movements relative to a neighbour (Formula 18)
   dynamic,    ///< `relative`, with a fraction c_h of the last movement added (Formulas 19, 20)
   automatic,  ///< `dynamic` with c_F and c_h chosen from the stiffness of the modes, no damping c_s
   verlet,     ///< velocities and real masses, see Integration::verlet
@@ -39,7 +39,8 @@ enum class Integration {
   /// first order in dt. With time_step = infinity, the default, there are neither masses nor
   /// velocities: K dP = F, Newton's step to the equilibrium. O(N) by a block-banded Cholesky
   /// factor. Filled in, since K may be indefinite and segments are stiff:
-  ///     - a multiple of the identity is added until all pivots are positive;
+  ///     - a multiple of the identity is added until all pivots are positive and a share of dP is
+  ///       accepted;
   ///     - dP turns segments, and lengthens them by its part along them, so that a large turn does
   ///       not stretch them; between two grips the gap that this leaves is spread and lengths are
   ///       restored;
@@ -49,13 +50,13 @@ enum class Integration {
   ///       what the quadratic model promises; while a gripper moves, until that energy is not far
   ///       above the one which the model promises;
   ///     - held points that a gripper has moved since the last step are part of dP; a movement that
-  ///       had to be shortened is made in as many Newton steps as it takes, in the same step.
+  ///       had to be shortened is made in several Newton steps, in the same step. After 64 linear
+  ///       solves the held points are set to their targets.
   /// A rod that clamps twist is refused, and so are rods of a Batch.
   implicit_euler,
 };
 
-/// Step settings as independent policies; the steppers above are the combinations that the paper
-/// uses.
+/// Step settings as independent policies; the steppers above are combinations of them.
 struct StepPolicy {
   StepLimit limit = StepLimit::none;  ///< movement of a step that is limited to l_s
   bool momentum = false;              ///< whether a step adds c_h times the last movement
@@ -75,7 +76,7 @@ struct StepPolicy {
 /// c_s_change.
 struct StepOptions {
   StepPolicy policy = force_model::policy(Stepper::automatic);  ///< policies of the step
-  double c_F = 0;  ///< scaling factor [m/N], > 0 unless automatic
+  double c_F = 0;  ///< scaling factor [m/N], > 0 for along_force unless automatic
   double c_h = 0;  ///< fraction of the last movement that is kept [-], 0 <= c_h < 1 with momentum
   double l_s = 0;  ///< largest movement [m], > 0 with a limit; 0 and automatic: 1/4 of the shortest
                    ///< rest length
@@ -84,8 +85,8 @@ struct StepOptions {
   /// the value 1. Movements of the size of rounding errors do not count, since a rod at rest would
   /// otherwise seem to oscillate.
   double c_s_change = 0.1;
-  /// Time step dt in real time [s], > 0; infinity: without masses and time, for
-  /// Integration::implicit_euler only.
+  /// Time step dt in real time [s], > 0, which along_force ignores; infinity: without masses and
+  /// time, for implicit_euler, but not for verlet.
   double time_step = std::numeric_limits<double>::infinity();
   double damping_rate = 0;  ///< damping rate c of a step in real time [1/s], >= 0
   /// Instruction set of the steps; sets other than the fastest are for tests and measurements only.

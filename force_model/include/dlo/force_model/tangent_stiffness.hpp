@@ -33,7 +33,7 @@ struct [[nodiscard]] EquilibriumCheck {
   /// The Newton step leads to an equilibrium, as a second step shows: it is at most a quarter of
   /// the first (Kantorovich), or only rounding. Otherwise `remaining_error` is no bound.
   bool proven = false;
-  /// RMS distance of the points from that equilibrium, bounded by both steps [m].
+  /// RMS distance of the points from that equilibrium, bounded by both steps [m]; -1 unless stable.
   double remaining_error = -1;
   /// RMS displacement of the points along the slowest mode due to the rounding of positions, which
   /// changes the forces of stiff segments by eps c_c |P| / L [m]. No stepping can reduce the error

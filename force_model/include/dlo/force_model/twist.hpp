@@ -8,7 +8,8 @@ namespace dlo::force_model {
 /// rod's frame (Grip::d1); elsewhere the rod can rotate about its tangent freely.
 struct Twist {
   double stiffness = 0;  ///< GJ [N m^2], >= 0; > 0 where two grips hold frames
-  /// GJ of the rod at each joint P_1 .. P_{n-1} [N m^2], each > 0; empty: `stiffness` everywhere.
+  /// GJ of the rod at each joint P_1 .. P_{n-1} [N m^2], > 0 between grips that hold frames; empty:
+  /// `stiffness` everywhere.
   Eigen::VectorXd stiffnesses = {};
   /// Last twist angle between each pair of neighbouring grips that hold frames, along the rod
   /// [rad]. The frames determine the angle up to full rotations; the value nearest to this one is
