@@ -28,7 +28,8 @@ constexpr double equal_prediction_tolerance = 0.01;
 constexpr double prediction_accuracy = 1e-5;
 /// Relative difference of predictions up to which options may also be correct.
 constexpr double acceptable_prediction_excess = 0.1;
-/// Number of successive terms that do not improve the prediction, after which no more are tried.
+/// Number of successive terms that do not improve the prediction, after which no more are tried;
+/// with shared clamps all are tried.
 constexpr int most_unsuccessful_terms = 2;
 
 enum class Clamps { nominal, shared, own };

@@ -222,7 +222,8 @@ class ForceModelFitter {
     settings_.design_curvature.reset();
   }
 
-  /// Returns the middle of the search range of ln c_b: the mean of the moment-matched ones.
+  /// Returns the middle of the search range of ln c_b: the mean of the moment-matched ones, or
+  /// ln(EI / l^2) of the first scene if there are none.
   [[nodiscard]] double search_centre(const std::vector<double>& matched) const {
     double sum = 0;
     int count = 0;

@@ -37,7 +37,8 @@ class ShapeMisfit {
   double operator()(const MaterialPoint& material);
 
   /// Searches for equilibria at a material instead of following one: with several grippers as at
-  /// the first material, and always from a shape's own points (energy_model::energy_near). Returns
+  /// the first material, and, where an equilibrium is known, also from the shape's own points
+  /// (energy_model::energy_near). Returns
   /// true if an equilibrium differs and is nearer to the shape's points. All results at other
   /// materials are then discarded, and a rod with one gripper is followed from that equilibrium
   /// from then on.
@@ -67,7 +68,7 @@ class ShapeMisfit {
   [[nodiscard]] std::shared_ptr<const Solved> solved(std::size_t i, const MaterialPoint& material);
   [[nodiscard]] std::shared_ptr<Solved> solve(std::size_t i, const MaterialPoint& material,
                                               const energy_model::Equilibrium* start);
-  /// Returns the equilibrium that is nearer to the points than `now` by more than rounding: the
+  /// Returns the equilibrium whose sum of squares is smaller than that of `now` by over 1 %: the
   /// lowest one or the one near the points; null if neither is.
   [[nodiscard]] std::shared_ptr<const Solved> nearer_equilibrium(
       std::size_t i, const MaterialPoint& material, const std::shared_ptr<const Solved>& now);

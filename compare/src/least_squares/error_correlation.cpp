@@ -12,9 +12,9 @@ namespace {
 /// Smallest number of residuals beyond the fitted numbers for which a correlation is estimated.
 constexpr Eigen::Index least_degrees_of_freedom = 5;
 /// Norm of the part of a design column that is linearly independent of the other columns, divided
-/// by the norm of the column, up to which the column counts as dependent. Columns are differences
-/// of shapes over strides of 1e-3. Their relative error is about 1e-6: shapes are accurate to 1e-10
-/// l, and derivatives of shapes are about 0.1 l.
+/// by the norm of the column, up to which the column counts as dependent. Columns of
+/// MaterialProfiles are differences of shapes over strides of 1e-3. Their relative error is about
+/// 1e-6: shapes are accurate to 1e-10 l, and derivatives of shapes are about 0.1 l.
 constexpr double rank_tolerance = 1e-6;
 /// Gain of twice the log likelihood that independent errors reach in one case of twenty or fewer.
 /// It lies between the 2.71 of one parameter at its bound and the 5.99 of two (measured: see the

@@ -40,7 +40,7 @@ struct Unknown {
 };
 
 /// The energy model's rods for the scenes of measured shapes, at any values of the fitted numbers.
-/// Each solve starts from the previous equilibrium.
+/// A solve starts from the shape's last equilibrium; without one, or if that fails, it is a search.
 class FittedRods {
  public:
   /// Returns the scene of a shape at some values of the numbers.
@@ -57,7 +57,8 @@ class FittedRods {
 
   /// Columns of the design to compute: derivatives by the frames only, or by the numbers too.
   enum class Columns { frames, all };
-  /// Returns the residuals of all shapes, std::nullopt if a shape has no equilibrium there.
+  /// Returns the residuals of all shapes, std::nullopt if a shape has no equilibrium there or, with
+  /// Columns::all, at a step of a number to either side.
   /// @throws ConvergenceError if the time limit is exceeded
   [[nodiscard]] std::optional<std::vector<ResidualSeries>> residuals(const Eigen::VectorXd& values,
                                                                      Columns columns);

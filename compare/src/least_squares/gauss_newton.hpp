@@ -87,7 +87,7 @@ class GaussNewton {
   /// Iterates to a local minimum of the deviance.
   /// @return false if a shape has no equilibrium at the values or at neighbouring ones
   /// @throws ConvergenceError if the time limit is exceeded
-  /// @throws InputError if no more numbers are measured than fitted
+  /// @throws InputError if the noise is estimated and no more numbers are measured than fitted
   [[nodiscard]] bool descend();
 
   /// Sets the variance by which squares are divided in the sum with the priors, from the next

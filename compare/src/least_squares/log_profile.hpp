@@ -35,7 +35,8 @@ class LogProfile {
   };
   [[nodiscard]] Interval below(double level);
 
-  /// Returns the local minima up to a level, including the least one, by growing parameter.
+  /// Returns the local minima up to a level, also those at an end of the evaluated range, by
+  /// growing parameter.
   [[nodiscard]] std::vector<Minimum> minima_below(double level) const;
 
  private:

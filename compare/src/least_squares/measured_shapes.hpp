@@ -67,13 +67,14 @@ class MeasuredShapes {
   [[nodiscard]] energy_model::Equilibrium solve(std::size_t shape, const Scene& scene,
                                                 const energy_model::Equilibrium* start);
   /// Returns the equilibrium that a local search from the shape's own points finds
-  /// (energy_model::energy_near), whatever its status; not_run if the rod stretches.
+  /// (energy_model::energy_near), whatever its status; not_run if the rod stretches or
+  /// fewer than two points have different arc lengths.
   /// @param like  an equilibrium with which the shape is aligned if its frame is unknown
   /// @throws in the cases of solve()
   [[nodiscard]] energy_model::Equilibrium solve_near(std::size_t shape, const Scene& scene,
                                                      const energy_model::Equilibrium& like);
   /// Returns how far a rod that was confined leaves its plane without the confinement [m]; 0 if it
-  /// does not.
+  /// does not, or if no such shape is found.
   [[nodiscard]] double out_of_plane_displacement(std::size_t shape, const Scene& scene,
                                                  const energy_model::Equilibrium& rod);
 
@@ -89,10 +90,10 @@ class MeasuredShapes {
   [[nodiscard]] double sum_of_squares(std::size_t shape,
                                       const energy_model::Equilibrium& rod) const;
 
-  /// Returns the residuals of an aligned shape, points minus rod, with the derivatives by its own
-  /// frame's coordinates and by the fitted numbers; other columns are zero. There is one series per
-  /// coordinate with given arc lengths, else one per direction across the rod; none out of the
-  /// plane of a shape that lies in one.
+  /// Returns the residuals of an aligned shape, points minus rod times root_weights(), with the
+  /// derivatives by its own frame's coordinates and by the fitted numbers; other columns are zero.
+  /// There is one series per coordinate with given arc lengths, else one per direction across the
+  /// rod; none out of the plane of a shape that lies in one.
   /// @param movements  by the fitted numbers, in columns after the frames'
   /// @param numbers  number of fitted numbers
   [[nodiscard]] std::vector<ResidualSeries> residuals(std::size_t shape, const Curve& curve,

@@ -75,8 +75,10 @@ class Aligner {
   double length_;
   AlignOptions options_;
   ArcLengths rule_ = ArcLengths::nearest;
-  bool covers_whole_rod_ = false;  // the polyline is as long as the rod, within whole_rod_slack
-  bool has_rod_ends_ = false;  // as long as the rod within end_slack: its ends are those of the rod
+  // The polyline is at least as long as the rod, minus whole_rod_slack.
+  bool covers_whole_rod_ = false;
+  // With weights by length: as long as the rod within end_slack, so its ends are those of the rod.
+  bool has_rod_ends_ = false;
   std::array<FilePoints, 2> file_points_;  // file runs along the rod, against it
 };
 

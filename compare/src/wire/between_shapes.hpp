@@ -51,14 +51,14 @@ struct CrossDistances {
 
 /// Returns the share of the mean square that all shapes have in common at equal arc lengths: N
 /// |mean|^2 divided by the sum of squares. It is 1 / N for independent shapes and 1 for equal ones.
-/// Returns std::nullopt for fewer than two shapes, or if less than half of their arc lengths is
-/// common.
+/// Returns std::nullopt for fewer than two shapes, if less than half of the longest is common to
+/// all, or if all distances are 0.
 [[nodiscard]] std::optional<double> common_share(const std::vector<CrossDistances>& shapes);
 
 /// Returns the RMS, over all shapes, of the distance of a shape from the mean of the others [m],
 /// measured as the distance from a rod: at equal arc lengths with `file`, else to the nearest point
-/// of the mean. Returns std::nullopt for fewer than two shapes, or if less than half of their arc
-/// lengths is common.
+/// of the mean. Returns std::nullopt for fewer than two shapes, or if less than half of the longest
+/// is common to all.
 [[nodiscard]] std::optional<double> repeatability(const std::vector<Shape>& shapes,
                                                   ArcLengths rule);
 

@@ -24,7 +24,8 @@ namespace dlo::compare {
 [[nodiscard]] bool are_same_experiment(const Scene& a, const Scene& b);
 
 /// Returns which of "natural curvature" and "clamp directions" are not fitted, if the shapes are of
-/// fewer than three different scenes: an error of these may then leave no residual.
+/// fewer than three different scenes: an error of these may then leave no residual. "clamp
+/// directions" requires a clamp in the first scene.
 [[nodiscard]] std::vector<std::string> unfitted_assumptions(const std::vector<Scene>& scenes,
                                                             const MaterialFitOptions& options);
 

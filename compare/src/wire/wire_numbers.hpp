@@ -46,7 +46,9 @@ struct WireNumber {
 [[nodiscard]] std::string why_no_camera_tilt(const std::vector<Scene>& scenes,
                                              const std::vector<MeasuredShape>& shapes);
 
-/// Returns the scenes with d1 stated explicitly at the first clamp. A fit may rotate this clamp out
+/// Returns the scenes with d1 stated explicitly at the first clamp if natural curvature and
+/// directions or rolls are fitted, else unchanged. Scenes of flat shapes, without a clamp, or that
+/// state d1 are unchanged too. A fit may rotate this clamp out
 /// of the scene's plane, which would otherwise define d1. If the scene determines d1 only up to
 /// `roll_tolerance`, d1 is level.
 /// @param flat  for each scene, whether its shape was measured in the scene's plane, which

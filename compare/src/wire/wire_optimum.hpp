@@ -42,7 +42,8 @@ struct WireProblem {
   [[nodiscard]] FittedRods rods(int terms) const;
 
   /// Returns the lower bound of log E in the search. The weight makes a softer rod a rope, whose
-  /// shape does not depend on E. The search covers at least two decades.
+  /// shape does not depend on E. The search covers at least two decades below the scene's E, unless
+  /// MaterialFitOptions::smallest_ratio ends it earlier.
   [[nodiscard]] double lowest() const;
   /// Returns the options of the iteration.
   [[nodiscard]] GaussNewtonOptions steps() const;
@@ -62,6 +63,7 @@ struct WireErrors {
   double variance = 0;          ///< variance of a coordinate; given, or from the residuals [m^2]
   double freedom = 0;           ///< degrees of freedom of the residuals
   /// Sum of squares of the residuals divided by the variance, and its degrees of freedom. For
+  /// independent errors the sum includes the priors' terms. For
   /// correlated errors these are Satterthwaite's, since residuals determine the correlation length
   /// hardly better than their variance.
   double sum_of_squares = 0;

@@ -57,7 +57,7 @@ struct Choices<ArcLengths> {
       {ArcLengths::nearest, "nearest", "nearest points of the rod"}};
 };
 
-/// Returns the upward direction for PoseFreedom::upright.
+/// Returns the upward direction for PoseFreedom::upright, +y for other poses.
 /// @throws InputError if the pose is `upright` and the scene has no gravity
 [[nodiscard]] Eigen::Vector3d upward_direction(const Scene& scene, PoseFreedom pose);
 
@@ -97,10 +97,14 @@ struct Alignment {
   /// Rule that was used for arc lengths. `chord` may replace `nearest` if the frame of a file of
   /// the whole rod is fitted and points are weighted by length.
   ArcLengths arc_lengths = ArcLengths::nearest;
-  Shape shape;                          ///< points in the scene's frame, by increasing arc length
-  double rms_m = 0;                     ///< RMS distance with the given weights
-  double opposite_direction_rms_m = 0;  ///< RMS distance in the other direction of the file
-  double mean_square = 0;               ///< mean of all squared distances, unweighted [m^2]
+  Shape shape;  ///< points in the scene's frame, by increasing arc length
+  /// RMS distance with the given weights; for `nearest` with weights by length and a fitted frame
+  /// the distance that ShapeCheck reports.
+  double rms_m = 0;
+  /// RMS distance in the other direction of the file; of a part of the points, if these suffice to
+  /// reject it.
+  double opposite_direction_rms_m = 0;
+  double mean_square = 0;  ///< mean of all squared distances, unweighted [m^2]
 };
 
 /// An interval of the rod between two adjacent points.

@@ -16,15 +16,15 @@ using Reference = std::function<energy_model::Samples(std::span<const double>)>;
 
 /// Distance of a shape from a reference at equal arc length. A polygon is compared at its points
 /// only, since its edges are not meant to approximate the rod. Integrals over the arc length use
-/// the trapezoidal rule.
+/// the trapezoidal rule. l is the arc length from the first point to the last.
 struct Deviation {
   double rms_m = 0;            ///< sqrt(1/l int |dr|^2 ds)
   double max_m = 0;            ///< largest distance of a point [m]
   double max_at_m = 0;         ///< arc length of the point with the largest distance [m]
   double tip_m = 0;            ///< distance at the free end [m]; NaN without one
-  double rms_over_length = 0;  ///< RMS distance divided by the length [-]
+  double rms_over_length = 0;  ///< RMS distance divided by l [-]
   /// RMS distance divided by the RMS displacement of the reference from the straight rod [-]; NaN
-  /// without a straight rod.
+  /// without a straight rod or such a displacement.
   double rms_over_movement = 0;
   double angle_rms_rad = 0;  ///< RMS angle between each segment and the tangent at its middle
   /// RMS difference between the shape's curvature vector at its inner points (rotation angle of the

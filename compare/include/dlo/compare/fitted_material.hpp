@@ -91,9 +91,10 @@ struct FittedValue {
   /// Given only if the interval is closed and no wider than
   /// MaterialFitOptions::largest_interval_ratio.
   std::optional<double> value;
-  std::optional<double> estimate;  ///< best value, identified or not; empty: not searched
-  std::optional<double> low;       ///< lower end of the interval
-  std::optional<double> high;      ///< upper end of the interval
+  /// Best value, identified or not; the scene's value if E has no effect and is not searched.
+  std::optional<double> estimate;
+  std::optional<double> low;   ///< lower end of the interval
+  std::optional<double> high;  ///< upper end of the interval
 };
 
 /// A number that was fitted in addition to E and the density.
@@ -231,11 +232,12 @@ struct MaterialFit {
   /// Quantities that are not identifiable from the shapes, and why; empty if all are identified.
   std::string not_identified;
   /// Given quantities whose errors may leave no residual, such as "length", "weight", "natural
-  /// curvature": the interval of E holds only if they are right. Empty without an interval.
+  /// curvature": the interval of E holds only if they are right. fit_material() lists only natural
+  /// curvature and clamp directions, calibrate() all; the latter lists none without an interval.
   std::vector<std::string> assumed;
-  /// Reason to distrust the fit: residuals far above the given noise (probability 1e-3), or above a
-  /// twentieth of the length, or of which a quantity that is not fitted would remove half; else
-  /// empty.
+  /// Reasons to distrust the fit, such as residuals far above the given noise (probability 1e-3),
+  /// or above a twentieth of the length, or systematic residuals, a contradicted tolerance, or a
+  /// rod that would leave its plane; calibrate() adds repeated shapes. Empty if there are none.
   std::string warning;
   /// Standard deviation of one coordinate: given, or estimated and then at least 1e-8 l, the energy
   /// model's own error.
@@ -247,18 +249,23 @@ struct MaterialFit {
   std::optional<CorrelatedErrors> correlation;
   /// Share of the residuals' mean square, perpendicular to the rod, that all shapes have in common
   /// at equal arc length; for independent residuals 1 divided by the number of shapes. Empty for a
-  /// single shape, or without a plane.
+  /// single shape, without a plane, if less than half of the longest shape is common to all, if
+  /// only the model's own error is left, if more than E and density is fitted, or without
+  /// `alternatives`.
   std::optional<double> common_share;
   /// Alternatives for systematic residuals (correlated along the rod, or common to all shapes):
   /// quantities whose fit would leave at most 0.7 of the residuals, the smallest residual first.
-  /// The interval of E holds only if there is no other error.
+  /// One that includes the quantities of another is listed only if it leaves clearly less. The
+  /// interval of E holds only if there is no other error.
   std::vector<FitAlternative> alternatives;
   /// With `choose_options`: the options that were tried, the chosen one first. It has the fewest
   /// numbers among those that predict as well as the best (within 1 %). The interval of E is
   /// extended to that of the largest number of terms that predicts nearly as well (within 10 %). If
   /// nothing systematic was left, it is the only one, with a prediction only if one was requested.
   std::vector<FitAlternative> tried;
-  std::vector<FittedNumber> others;  ///< numbers that were requested, those of the wire first
+  /// Numbers that were requested: natural curvature, directions and positions of grippers,
+  /// differences from shared directions, rolls, and the tilt of the camera.
+  std::vector<FittedNumber> others;
   /// Natural curvature of the first scene with the fitted corrections, about d1 and d2 [1/m]:
   /// coefficients of P_0, P_1, .. in this order; empty if it was not requested.
   std::vector<Eigen::Vector2d> natural_curvature;

@@ -94,14 +94,15 @@ struct ForceModelFit {
 
 /// Derives the force model's parameters from physics.
 ///
-/// N: the largest deviation of the scenes' chains at rest is measured at N = 16 and 32. The order
-/// of convergence predicts the N that brings it below 0.9 of the target; N is then increased until
-/// it does. c_b of the paper's law: by Formula 21, moment-matched, and by GSL's Brent minimiser
-/// over log c_b. The deviation is that of the chain, whose rest shape is the force model's. c_c: as
-/// small as a stretch of a tenth of the target allows, since the number of steps grows with its
-/// square root; at most AE. Steppers verlet and implicit are kept. For the others c_F and c_h are
-/// those of Polyak's heavy ball for the stiffest and slowest modes at the start and at rest in any
-/// of the scenes, and l_s is a quarter of a segment. Given values in the first scene's settings
+/// N, unless it is given or the law is the paper's: the largest deviation of the scenes' chains at
+/// rest is measured at N = 16 and 32. The order of convergence predicts the N that brings it below
+/// 0.9 of the target; N is then increased until it does, to at most 4000. c_b of the paper's law:
+/// by Formula 21, moment-matched, and by GSL's Brent minimiser over log c_b. The deviation is that
+/// of the chain, whose rest shape is the force model's. c_c: as small as a stretch of a tenth of
+/// the target allows, since the number of steps grows with its square root; at most AE. Steppers
+/// verlet and implicit are kept. For the others c_F and c_h are those of Polyak's heavy ball for
+/// the stiffest and slowest modes at the start and at rest in any of the scenes, with a margin for
+/// the stiffest, and l_s is a quarter of a segment. Given values in the first scene's settings
 /// (c_b, c_c) are kept. Finally the force model is stepped to rest with these settings, and its
 /// deviation is reported.
 /// @param holdouts  scenes that are compared, but not fitted

@@ -58,9 +58,10 @@ namespace dlo::compare {
 /// the shape under gravity alone depends on density / E. If neither weight nor a load or compliant
 /// obstacle acts on the rod, its equilibria are the same for every E, and E is not searched; the
 /// other requested quantities are fitted with the scene's E.
-/// @throws InputError if the numbers of scenes and shapes differ, or there are fewer numbers than
-/// unknowns; ConvergenceError if the energy model has no shape at any modulus, if a shape within
-/// the interval is not verified on its obstacles, or if `solve.time_limit` per scene is exceeded
+/// @throws InputError if the numbers of scenes and shapes differ, if options contradict each other,
+/// or if there are fewer numbers than unknowns; ConvergenceError if the energy model has no shape
+/// at any modulus, if a shape within the interval is not verified on its obstacles, or if
+/// `solve.time_limit` per scene is exceeded
 [[nodiscard]] MaterialFit fit_material(const std::vector<Scene>& scenes,
                                        const std::vector<MeasuredShape>& shapes,
                                        const MaterialFitOptions& options = {});

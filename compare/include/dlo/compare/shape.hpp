@@ -26,7 +26,7 @@ struct Shape {
 [[nodiscard]] Eigen::Vector3d joint_curvature(const Shape& shape, std::size_t point);
 
 /// Returns the absolute curvature at all points of a polygon [1/m], M; an end has the value of the
-/// adjacent joint.
+/// adjacent joint. All are 0 if there are fewer than three points.
 [[nodiscard]] std::vector<double> joint_curvatures(const Shape& shape);
 
 /// Interpolates values linearly at other arc lengths; beyond an end the end value is returned.
@@ -37,7 +37,7 @@ struct Shape {
 
 /// Returns points at other arc lengths, on straight lines between the given ones; arc lengths
 /// beyond an end give the end point.
-/// @throws std::invalid_argument if the shape has fewer than two points
+/// @throws std::invalid_argument if the shape has fewer than two points, or not one per arc length
 [[nodiscard]] Shape resample(const Shape& shape, const std::vector<double>& arc_lengths);
 
 /// Returns `count` arc lengths from 0 to `length`, equally spaced [m].

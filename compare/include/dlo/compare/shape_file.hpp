@@ -28,9 +28,9 @@ inline constexpr long most_shape_points = 100'000;
 ///          fifth of the polyline). Fields are separated by commas, or else by semicolons, tabs or
 ///          blanks; blank lines and lines that begin with # are skipped. A header may also have
 ///          d1_x, d1_y, d1_z. A table of nodes has node,x,y,z per line and other columns, which are
-///          ignored: under a header with these names, or without one if the first column contains
-///          the nodes' numbers (integers; in a table of four columns counted from 0 or 1, with a
-///          fourth column that is no arc length).
+///          ignored: under a header with these names (or id, index or point for node), or without
+///          one if the first column contains the nodes' numbers (integers; in a table of four
+///          columns counted from 0 or 1, with a fourth column that is no arc length).
 ///     JSON: [[x, y, z], ...], or an object with `points_m` and, if known, `arc_length_m` as `dlo
 ///          solve` writes it; `points` and `arc_length` are in the unit that is given; `d1`,
 ///          vectors as points.

@@ -145,10 +145,10 @@ struct Solution {
   /// (of energy and exact, if solve() finds that it matters; of chain, if the scene asks for a rod
   /// that stretches).
   std::vector<std::string> neglected;
-  /// Estimated effect of stretch, of energy and exact, from solve() and solve_all(). It refers to
-  /// the shape without stretch, also if the estimate led to a solution with stretch.
+  /// Estimated effect of stretch, of energy and exact, from solve(), solve_near() and solve_all().
+  /// It refers to the shape without stretch, also if the estimate led to a solution with stretch.
   StretchEffect stretch;
-  /// decision on stretch, from solve() and solve_all()
+  /// decision on stretch, from solve(), solve_near() and solve_all()
   StretchDecision stretch_decision = StretchDecision::given;
   /// Smallest eigenvalue of the reduced Hessian divided by EI/l, if a search computed it; else NaN.
   double smallest_eigenvalue = std::numeric_limits<double>::quiet_NaN();

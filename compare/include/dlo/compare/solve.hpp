@@ -14,7 +14,8 @@ namespace dlo::compare {
 /// forces are zero. Continuous models are sampled at `arc_lengths` (or at 101 equally spaced ones
 /// if empty); polygons keep their points, or are resampled on straight lines if `arc_lengths` are
 /// given.
-/// @throws InputError if the model cannot solve such a scene, ConvergenceError
+/// @throws InputError if the model cannot solve such a scene, or if an arc length is not on the
+/// rod; ConvergenceError
 [[nodiscard]] Solution solve(const Scene& scene, Model model, const SolveOptions& options = {},
                              const std::vector<double>& arc_lengths = {});
 
