@@ -62,9 +62,10 @@ struct Discretisation {
 /// is that of the adjacent halves of its segments; the parts inside end grippers have no weight.
 /// `paper`: a clamp holds the point at its arc length and the following one (at the rod's end the
 /// preceding one), and every point has the weight m g / N (of a rod with sections: that of the
-/// corresponding N-th of the rod). Loads between two points are distributed to both by the lever
-/// rule, which preserves their force and moment: the rod's own moment differs by at most F L/4 over
-/// one segment, which is second order like all other errors.
+/// corresponding N-th of the rod). A distributed load acts on each point with its part
+/// between the middles of the adjacent segments. A point load between two points is distributed to
+/// both by the lever rule, which preserves its force and moment: the rod's own moment differs by at
+/// most F L/4 over one segment, which is second order like all other errors.
 ///
 /// With c clamps of which e are at ends, L = l/(N - 1 - e/2) (`paper`: l/(N-1)). Held segments have
 /// the length L. The rod between two of them, or to a pin or a free end, is divided into equal

@@ -89,8 +89,9 @@ inline constexpr double modulus_resolution = 1e-8;
 /// minimises the mean square. Every modulus is solved from the nearest one that is known. A shape
 /// counts as the same equilibrium if it is stable and moves by less than a tenth of the length, in
 /// smaller steps if necessary; else the equilibrium ends there. The time limit is for the whole
-/// search. If it is exceeded, or if the distance changes by at most the energy model's own error,
-/// there is no E*, and the result states why.
+/// search. If it is exceeded, if the distance changes by at most the energy model's own error, or
+/// if the equilibrium is lost at the moduli next to the scene's, there is no E*, and the result
+/// states why.
 /// @throws InputError, ConvergenceError as solve_reference for the scene's own modulus
 [[nodiscard]] EffectiveModulus fit_effective_modulus(const Scene& scene, const Shape& shape,
                                                      const SolveOptions& options = {});

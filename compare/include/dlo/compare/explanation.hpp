@@ -83,7 +83,8 @@ struct ChainJudgement {
 [[nodiscard]] ChainJudgement judge_as_chain(const Scene& scene, const ShapeCheck& check,
                                             const ShapeTolerance& tolerance);
 
-/// Adds the best explanation to the reason of a failed verdict; the verdict itself is unchanged.
+/// Adds the best explanation to the reason of a verdict that is not `pass`; the verdict itself is
+/// unchanged.
 /// The explanation comes first if it is a cause in the file that brings the shape within the
 /// tolerance, and the shape is more than ten tolerances away.
 /// @param explanations  result of explain_shape(), for the same check

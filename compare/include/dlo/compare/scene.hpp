@@ -248,8 +248,8 @@ struct Scene {
   /// Returns the sum of all distributed loads between two arc lengths [N], 0 <= begin <= end <=
   /// length.
   [[nodiscard]] Eigen::Vector3d distributed_between(double begin, double end) const;
-  /// Returns the sum of the absolute values of all loads [N], without weight; couples are divided
-  /// by the length.
+  /// Returns the sum of the absolute values of all point and distributed loads [N], without weight
+  /// and drag; couples are divided by the length.
   [[nodiscard]] double total_load_magnitude() const;
   /// Whether a load has a couple.
   [[nodiscard]] bool has_couples() const;
@@ -282,7 +282,7 @@ struct Scene {
   }
   /// Returns the frame (columns d1, d2, t) in which the first clamp holds a rod with material
   /// directors.
-  /// @throws InputError if neither a clamp nor a plane determines it
+  /// @throws InputError if there is no clamp, or if neither its frame nor a plane determines d1
   [[nodiscard]] Eigen::Matrix3d first_frame() const;
   /// Returns the normal of the plane in which an intrinsically curved rod is assumed to be bent,
   /// because its first clamp gives no d1: that of the scene without loads
@@ -294,7 +294,7 @@ struct Scene {
   /// Returns the mean curvature of the stress-free shape as the vector in space about which the
   /// tangent rotates [1/m], with d1 and d2 as the first clamp holds them; zero for an intrinsically
   /// straight rod.
-  /// @throws InputError if neither a clamp nor a plane determines the frame
+  /// @throws InputError for a curved rod in the cases of first_frame()
   [[nodiscard]] Eigen::Vector3d natural_curvature() const;
   /// Returns the mean of the natural curvature between two arc lengths, begin < end, as
   /// natural_curvature() does of the whole rod.
@@ -308,7 +308,8 @@ struct Scene {
   /// Returns the unit normal of the plane that contains grips, forces and obstacles in reach; any
   /// one of several. Empty if there is none, if clamps hold twist or a load that follows the rod
   /// leaves the plane, which bends the rod out of it, or if the natural curvature is about another
-  /// axis or the plane is oblique to the principal axes of the cross-section.
+  /// axis, the plane is oblique to the principal axes of the cross-section, or a rod with material
+  /// directors is naturally twisted.
   [[nodiscard]] std::optional<Eigen::Vector3d> plane_normal() const;
   /// Whether plane_normal() exists.
   [[nodiscard]] bool planar() const { return plane_normal().has_value(); }

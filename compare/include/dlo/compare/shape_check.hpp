@@ -39,8 +39,9 @@ struct ShapeCheck {
   double length_m = 0;  ///< l of the rod
   /// Length of the reference; differs from l only if the rod stretches.
   double stretched_length_m = 0;
-  Alignment alignment;            ///< the shape as aligned with the reference
-  ComparedEquilibrium state;      ///< the stable equilibrium nearest to the shape
+  Alignment alignment;  ///< the shape as aligned with the reference
+  /// The stable equilibrium nearest to the shape; the lowest one if none is proven stable.
+  ComparedEquilibrium state;
   Shape reference;                ///< the energy model at the alignment's arc lengths
   energy_model::Equilibrium rod;  ///< the whole compared equilibrium
   std::vector<energy_model::Equilibrium> other_rods;  ///< the other stable equilibria

@@ -51,7 +51,7 @@ struct ShapeJudgement {
   double judged_m = 0;  ///< deviation that was compared with the tolerance [m]
   /// Verdict on that deviation and on the part of the rod that the points show.
   ShapeVerdict verdict = ShapeVerdict::fail;
-  std::string reason;  ///< one clause: every cause of a failure, or why the shape passes
+  std::string reason;  ///< clauses: every cause of a failure, or why the shape passes
   /// Whether the trivial shape (TrivialShape) would not pass as well. Empty: the shape does not
   /// pass, neither weight nor loads act, or no trivial shape was found.
   std::optional<bool> significant;
