@@ -110,8 +110,8 @@ inline constexpr int most_planned_points = 4000;
 /// - Twist: a round, naturally straight rod whose grips leave the twist free has none; nothing is
 ///   neglected. If two clamps hold frames, chain and force neglect twist with the law paper and in
 ///   an intrinsically curved rod. No polygon then bounds stretch, shear and its own error, since
-///   the polygon of the response has no twist. Nor does that of a rod with sections or with natural
-///   curvature.
+///   the polygon of the response has no twist. Nor does that of a rod with sections, natural
+///   curvature, two bending stiffnesses or couples.
 /// - Natural curvature: chain and force neglect it in space and with the law paper.
 /// The plan of a scene that cannot be planned in time, or not at all, has no bounds and states why.
 /// @throws std::invalid_argument if an option is out of range

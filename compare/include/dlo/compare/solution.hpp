@@ -142,8 +142,8 @@ struct Solution {
   std::vector<Linking> linking;
   /// Effects that the scene has and the model neglects: "twist", "natural curvature", "friction"
   /// (if the rod touches an obstacle with friction; in Comparison if either model does), "stretch"
-  /// (of energy and exact, if solve() finds that it matters; of chain, if the scene asks for a rod
-  /// that stretches).
+  /// (of energy and exact, if solve() finds that it matters; of chain with rigid segments, if the
+  /// scene counts stretch).
   std::vector<std::string> neglected;
   /// Estimated effect of stretch, of energy and exact, from solve(), solve_near() and solve_all().
   /// It refers to the shape without stretch, also if the estimate led to a solution with stretch.
