@@ -12,7 +12,8 @@ namespace dlo::compare {
 /// Scene::stretch is Stretch::counted, else `energy`. It is also the default model of `dlo solve`.
 [[nodiscard]] Model reference_model(const Scene& scene);
 
-/// Solves a scene by one of the two continuous models.
+/// Solves a scene by one of the two continuous models. With `exact` and Stretch::automatic the
+/// estimate of stretch decides whether the rod stretches.
 /// @param model  `energy` or `exact`
 /// @throws InputError; ConvergenceError, also if the shape is not verified or near a fold, unless
 /// `accept_unverified` is set. A balance under loads without a potential is returned as

@@ -137,8 +137,8 @@ struct Solution {
   /// Contacts with rigid obstacles, of energy and exact; `obstacle` is the index in the scene.
   std::vector<energy_model::ContactPart> contacts;
   std::vector<energy_model::TwistedPart> twists;  ///< as Equilibrium::twists
-  /// Twist and writhe of the same intervals, of energy and exact; without those where the straight
-  /// continuation of an end passes through the rod.
+  /// Twist and writhe of the same intervals, of energy and exact; without those whose end
+  /// directions are opposite and along the chord, which leaves writhe and held turns undetermined.
   std::vector<Linking> linking;
   /// Effects that the scene has and the model neglects: "twist", "natural curvature", "friction"
   /// (if the rod touches an obstacle with friction; in Comparison if either model does), "stretch"
