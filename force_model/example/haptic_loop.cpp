@@ -100,7 +100,7 @@ double elapsed_time() {
   return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
 }
 
-/// Prints one line on the times of all frames [s].
+/// Prints one line on the times of all frames [us]. @param times  [s]; sorted by this call
 void print_times(const char* what, std::vector<double>& times) {
   std::sort(times.begin(), times.end());
   const auto percentile = [&](double percent) {
