@@ -16,7 +16,8 @@ namespace dlo::compare {
                                                       const SolveOptions& options);
 
 /// Returns the springs of chains of unequal segments that are nearest to a scene's rod. A chain is
-/// held in the middle of segments only if the segments at the clamps have half their length.
+/// held in the middle of segments only if the segments at clamped ends of the rod are half as long
+/// as their neighbours.
 /// @param lengths  along the rod, 4 to 200, scaled to the rod's length [m]
 /// @throws InputError if there are not 4 to 200, if one is not > 0, or if their sum differs from
 /// the rod's length by more than 5 %; ConvergenceError if no shape of the rod is found

@@ -16,7 +16,8 @@ class ResultError : public std::runtime_error {
 class InputError : public ResultError {
  public:
   /// @param message  quoted input may contain control characters; each becomes a "?", so that a
-  /// malformed file neither breaks the line nor controls a terminal
+  /// malformed file neither breaks the line nor controls a terminal. Of a message above 4096 bytes
+  /// the middle is omitted.
   explicit InputError(const std::string& message);
 
   /// Constructs the error of a key in a file: the message is "where: key" and the problem.
