@@ -17,7 +17,7 @@ namespace dlo::compare {
 namespace {
 
 /// Returns the index of the state nearest to the shape to which the Hookean polygon relaxes from
-/// the force model's shape; saddles are excluded.
+/// the force model's shape; saddles are excluded. Returns 0 if there is only one state.
 std::size_t state_of(const Scene& scene, const Shape& force,
                      const std::vector<energy_model::Equilibrium>& states,
                      const SolveOptions& options) {
@@ -40,8 +40,9 @@ std::size_t state_of(const Scene& scene, const Shape& force,
   return nearest;
 }
 
-/// Adds the equilibrium that a search from the force model's points finds, unless a known state is
-/// nearer than any other can be.
+/// Adds the equilibrium that a search from the force model's points finds, if it is stable and not
+/// yet known. Does not search if a stable known state is within `nearest_shape_tolerance` of these
+/// points.
 void add_state_of_force_model(const Scene& scene, const Shape& force, const SolveOptions& options,
                               std::vector<energy_model::Equilibrium>& states) {
   const bool is_near = std::any_of(states.begin(), states.end(), [&](const auto& state) {

@@ -104,7 +104,8 @@ class FollowedState {
     return up ? std::pair{above->first, &above->second} : std::pair{below->first, &below->second};
   }
 
-  /// Returns null if there is no equilibrium at the modulus, or a different one.
+  /// Returns null if the solver finds no equilibrium at the modulus or a different one, or if the
+  /// energy model does not support the modulus. @throws OutOfTime
   const Known* step(const Known& start, double log_ratio) {
     SolveOptions options = options_;
     options.start = &start.state;
@@ -134,8 +135,8 @@ class FollowedState {
   int solves_ = 0;
 };
 
-/// Scans from E*/E = 1 in both directions, each until the mean square has not decreased for half a
-/// decade.
+/// Scans from E*/E = 1 in both directions, each until the RMS distance has not decreased by more
+/// than `resolution` [m] for half a decade, the equilibrium ends, or the range of moduli ends.
 Scan scan_both_ways(FollowedState& mean_square, double resolution) {
   const double step = std::log(10) / steps_per_decade;
   const int lowest = static_cast<int>(std::round(std::log(smallest_modulus_ratio) / step));
@@ -178,7 +179,7 @@ double rms_distance_from_straight(const Scene& scene, const energy_model::Equili
 
 /// Whether the followed equilibrium ends or bifurcates close to a modulus. At a bifurcation the
 /// smallest eigenvalue is zero and increases on both sides; on one side it belongs to another
-/// branch.
+/// branch. False close to the ends of the range of moduli.
 bool is_at_bifurcation(FollowedState& state, double log_ratio) {
   // Equilibria are followed up to this distance from the end of their branch [ln of the modulus].
   constexpr double offset = 2 * least_step;

@@ -68,7 +68,8 @@ struct RodsWithout {
                            ///< discretises
 };
 
-/// Returns the differences for the lowest shapes of these rods.
+/// Returns the differences for the lowest shapes of these rods; zero if the force model neglects
+/// nothing that the scene has.
 /// @param taken  the scene as the polygons model it
 RodsWithout rods_without(const Scene& scene, const Scene& taken, const std::vector<double>& s,
                          const Fields& fields, const SolveOptions& options) {

@@ -54,7 +54,7 @@ double distance_from_line(const Eigen::Matrix3Xd& points) {
   return std::sqrt(std::max(0.0, eigen.eigenvalues()[0] + eigen.eigenvalues()[1]));
 }
 
-/// Returns the number of points that do not coincide with the position of a gripper.
+/// Returns the number of points that are more than 1e-3 of the length away from all grippers.
 long measured_points(const Scene& scene, const Eigen::Matrix3Xd& points) {
   constexpr double tolerance = 1e-3;  // divided by the length
   long count = 0;
@@ -89,7 +89,7 @@ Deviation measured_deviation(const Scene& scene, const Alignment& alignment,
 }
 
 /// Describes what is probably wrong with a polyline that is not as long as its part of the rod;
-/// empty if nothing.
+/// empty if nothing, or if another unit is more probable.
 std::string hint_of(const ShapeCheck& check, const Measured& measured) {
   constexpr double least = 1e-3;  // divided by the length: a difference that a person would see
   const Alignment& alignment = check.alignment;
@@ -216,8 +216,8 @@ struct LaidStates {
     }
   }
 
-  /// Returns the index of the stable equilibrium nearest to the shape, or 0, the index of the
-  /// lowest one, if none is proven stable.
+  /// Returns the index of the equilibrium nearest to the shape among the stable ones and the lowest
+  /// one, which has the index 0 and need not be proven stable.
   [[nodiscard]] std::size_t nearest() const {
     std::size_t result = 0;
     for (std::size_t i = 1; i < states.size(); ++i) {
@@ -227,7 +227,8 @@ struct LaidStates {
     return result;
   }
 
-  /// Adds a stable equilibrium that a search from the shape's points has found.
+  /// Adds an equilibrium that a search from the shape's points has found, if it is proven stable
+  /// and not yet known.
   void add(const energy_model::Equilibrium& near, const Scene& scene) {
     const std::optional<std::size_t> added = insert_equilibrium(scene, near, states);
     if (!added) return;
