@@ -108,7 +108,7 @@ int expected_order(const Scene& scene, ChainClamp clamp) {
 }
 
 /// Whether the distance [m] is within the bound of make_plan() for a polygon with the chain's
-/// points, if a clamp holds the middle of its first or last segment and the rod touches nothing.
+/// points, if clamps hold the middles of its segments and the rod touches nothing.
 bool is_within_bound(const Scene& scene, const CandidateChain& chain,
                      const energy_model::Equilibrium& rod, double distance_m) {
   const bool touches = std::ranges::any_of(

@@ -13,7 +13,8 @@ enum class ChainError {
   /// The distance decreases with the order of the chain's clamps, or is within the plan's bound.
   discretisation,
   too_coarse,  ///< the distance decreases with shorter segments, but not yet with that order
-  /// Eight times as many segments do not halve the distance: another shape than the rod.
+  /// Up to eight times as many segments do not halve the distance, or the chain with twice as many
+  /// segments does not come to rest: another shape than the rod.
   different_shape,
 };
 

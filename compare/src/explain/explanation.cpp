@@ -370,7 +370,8 @@ std::optional<Explanation> cause_better_than_stiffness(
   const auto criterion = [&check](double rms, int numbers) {
     return model_criterion(rms, numbers, check.whole_rod_rms_m, check.length_m);
   };
-  // E* is one number, so an explanation without numbers is treated as one with one number.
+  // E* counts as no number and each explanation as at least one number, so a cause must leave less
+  // than half of the deviation that E* leaves.
   const double of_stiffness = criterion(check.effective_modulus.rms_m, 0);
   for (const Explanation& explanation : explanations) {
     if (criterion(explanation.rms_m, std::max(1, explanation.numbers)) < of_stiffness) {

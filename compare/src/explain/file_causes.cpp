@@ -70,7 +70,7 @@ std::string name_of(const Eigen::Matrix3d& axes, const Eigen::Vector3d& gravity)
   return axes.determinant() < 0 ? "the file is mirrored" : "the file's axes are turned";
 }
 
-/// Describes which axes of the file are the scene's axes.
+/// Describes which axes of the file are the scene's axes, for those that differ.
 std::string axes_text(const Eigen::Matrix3d& axes) {
   std::string text;
   for (Eigen::Index to = 0; to < 3; ++to) {
@@ -85,8 +85,9 @@ std::string axes_text(const Eigen::Matrix3d& axes) {
   return text;
 }
 
-/// Returns all signed permutations except the identity: those with the fewest changes first, and
-/// among exchanged axes proper rotations before mirror images.
+/// Returns all signed permutations except the identity, in the order of the number of exchanged
+/// axes, then (if axes are exchanged) proper rotations before mirror images, then in the order of
+/// the number of negative signs.
 std::vector<Eigen::Matrix3d> signed_permutations() {
   std::vector<Eigen::Matrix3d> all;
   std::array<Eigen::Index, 3> order = {0, 1, 2};
@@ -118,8 +119,8 @@ struct FileAxes {
 };
 
 /// Returns all axes with which the points differ from those in the scene's axes and in any axes
-/// listed before, by more than 1e-9 of their extent. Those with the fewest changes come first, and
-/// among exchanged axes proper rotations come before mirror images.
+/// listed before, by more than 1e-9 of their largest coordinate. The order is that of
+/// signed_permutations().
 /// @param points  in the file's axes, 3 x M
 std::vector<FileAxes> other_axes(const Eigen::Vector3d& gravity, const Eigen::Matrix3Xd& points) {
   constexpr double rounding = 1e-9;
@@ -214,7 +215,8 @@ Eigen::Matrix3d picture_axes(const Eigen::Vector3d& gravity, double up) {
   return axes;
 }
 
-/// Adds pixel coordinates: of any scale, counted from a corner, often downwards.
+/// Adds pixel coordinates: of any scale, counted from a corner, often downwards. Adds none if the
+/// polyline is as long as the rod within about 10 %.
 void add_pixels(const Scene& scene, const MeasuredShape& shape, const TakeFileCause& take) {
   const double per_unit = scene.length / arc_lengths_along(shape.points).back();
   constexpr double least_log_change = 0.1;
@@ -251,7 +253,8 @@ std::pair<double, std::vector<Eigen::Index>> greedy_path_from(Eigen::Index start
 }
 
 /// Adds another order of the points, if the shortest greedy path through them is clearly shorter
-/// than the file's polyline.
+/// than the file's polyline. Files with arc lengths or with more than 300 points are not
+/// considered.
 void add_point_order_cause(const MeasuredShape& shape, const ShapeCheck& check,
                            const TakeFileCause& take) {
   constexpr Eigen::Index most_points = 300;

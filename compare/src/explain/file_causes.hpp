@@ -39,7 +39,8 @@ using TakeFileCause = std::function<void(const FileCause&)>;
 /// @param way  displacement from the file's points to the scene's [m]
 [[nodiscard]] std::string origin_clause(const Eigen::Vector3d& way);
 
-/// Calls `take` for all possible single errors of a file whose frame is stated to be the scene's.
+/// Calls `take` for each single error of a file whose frame is stated to be the scene's: its unit,
+/// axes, origin, direction of arc lengths, pixels, order of points, extent, scale and rotation.
 void try_single_errors(const Scene& scene, const MeasuredShape& shape, const ShapeCheck& check,
                        const TakeFileCause& take);
 
@@ -52,8 +53,10 @@ void try_single_errors(const Scene& scene, const MeasuredShape& shape, const Sha
 /// Group name (FileCause::cause_group) of combinations of several errors.
 inline constexpr const char* joint_cause = "several";
 
-/// Calls `take` for all combinations of several errors of a file: its unit, axes, origin and
-/// missing ends. Each error after the first counts as one number, and another origin as one more.
+/// Calls `take` for all combinations of several errors of a file: its unit, axes, origin and, if
+/// the polyline is shorter than 99 % of the rod, missing ends. Only units are considered in which
+/// the polyline is 0.5 to 1.25 times as long as the rod. Each error after the first counts as one
+/// number, and another origin as one more.
 /// @param length  length of the rod's axis, with stretch [m]
 void try_joint_errors(const Scene& scene, const MeasuredShape& shape, double length,
                       const TakeFileCause& take);

@@ -141,7 +141,8 @@ class Chain {
     return true;
   }
 
-  /// Returns the chain's points at rest; std::nullopt if the chain does not come to rest.
+  /// Returns the chain's points at rest; std::nullopt if the chain does not come to rest or is
+  /// strained.
   /// @param factor  factor on the stiffness of the springs
   [[nodiscard]] std::optional<Eigen::Matrix3Xd> at_rest(
       double factor, JointLaw law, int max_evaluations = most_evaluations_near_file) const {
@@ -176,7 +177,8 @@ class Chain {
     return result;
   }
 
-  /// Sets the paper's joint law, and, if the chain is welded, the paper's points of equal weight.
+  /// Sets the stiffness of the paper's joint law and, if the chain is welded, the paper's points of
+  /// equal weight.
   void set_paper_law() {
     problem_.stiffness = paper_stiffness(scene_, inner_.size(), clamp_);
     problem_.stiffnesses.resize(0);
@@ -389,7 +391,7 @@ class Chain {
 };
 
 /// Returns the chain with the springs that fit best, by Gauss-Newton steps along the logarithm of
-/// their stiffness; std::nullopt if a chain does not come to rest.
+/// their stiffness; std::nullopt if a chain with slightly stiffer springs does not come to rest.
 std::optional<CandidateChain> fitted(const Chain& chain, Eigen::Matrix3Xd rest, JointLaw law) {
   constexpr int most_steps = 10;
   constexpr double difference_step = 0.01;

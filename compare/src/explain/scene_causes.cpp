@@ -58,7 +58,8 @@ Eigen::VectorXd zeros(Eigen::Index count) { return Eigen::VectorXd::Zero(count);
 
 using Numbers = Eigen::VectorXd;
 
-/// Returns a cause whose numbers change the scene. @param stride, longest_step  of every number
+/// Returns a cause whose numbers change the scene. @param difference_step, longest_step  of every
+/// number
 template <typename Change, typename Words>
 SceneCause make_cause(const Scene& scene, const Numbers& start, double difference_step,
                       double longest_step, const Change& change, const Words& words) {
@@ -159,7 +160,7 @@ std::string text_of(const Eigen::Vector3d& direction) {
   return fmt::format("[{:.4g}, {:.4g}, {:.4g}]", shown.x(), shown.y(), shown.z());
 }
 
-/// Returns the unit tangent of a shape at an arc length.
+/// Returns the direction of the segment of a shape at an arc length; x if its points coincide.
 Eigen::Vector3d tangent_at(const Shape& shape, double at) {
   const std::vector<double>& s = shape.arc_length;
   const auto above = std::upper_bound(s.begin() + 1, s.end() - 1, at);
@@ -225,7 +226,8 @@ SceneCause clamps_to_pins_cause(const Scene& scene, const std::vector<std::size_
   return cause;
 }
 
-/// Adds the exchange of pin and clamp for each gripper, then for all pins and for all clamps.
+/// Adds the exchange of clamp for pin for each clamp, and for all if there are several; then the
+/// exchange of pin for clamp for each pin, and for all if there are several.
 void add_support_causes(std::vector<SceneCause>& causes, const Scene& scene, const Shape& shape,
                         const std::optional<Eigen::Vector3d>& normal) {
   std::vector<std::size_t> pins;

@@ -14,7 +14,8 @@
 
 namespace dlo::compare {
 
-/// A possible error of a scene, described by numbers that are zero without the error.
+/// A possible error of a scene, described by numbers. They are zero without the error, unless
+/// `changes_support`; a cause may have no number.
 struct SceneCause {
   Eigen::VectorXd start;            ///< start of the fit
   Eigen::VectorXd difference_step;  ///< steps of differences; zero: the start is not fitted
@@ -32,10 +33,12 @@ struct SceneCause {
 /// factor on the weight.
 [[nodiscard]] bool is_loaded_by_weight_alone(const Scene& scene);
 
-/// Returns all possible single errors of a scene, the slowest to fit last.
+/// Returns the single errors of a scene that are considered.
 /// @param shape     compared shape, in the scene's frame
 /// @param estimated_shape_length  length along its points [m]
-/// @param flat      whether the shape lies in the scene's plane: no cause then leaves it
+/// @param flat      whether the shape lies in the scene's plane: positions and directions of
+/// grippers then stay in it, and torsional stiffness and twist are no causes; only gravity may
+/// leave it
 [[nodiscard]] std::vector<SceneCause> scene_causes(const Scene& scene, const Shape& shape,
                                                    double estimated_shape_length, bool flat);
 

@@ -58,7 +58,7 @@ std::pair<int, int> count_end_grippers(const Scene& scene, const Vector3d& point
   return count;
 }
 
-/// Returns the shape with the end of its last segment added.
+/// Returns the shape with the end of its last segment added, and without directors.
 MeasuredShape with_last_segment_end(const Scene& scene, MeasuredShape shape, double segment) {
   const Index n = shape.points.cols();
   const Vector3d last = shape.points.col(n - 1);
