@@ -31,8 +31,9 @@ struct ReleasedMotion {
 /// @param times       growing, from 0 [s]
 /// @param arc_length  of the points [m], M
 /// @param terms       number of terms of each field, > 0
-/// @throws InputError if a moving rod does not support the scene, or grippers or obstacles move;
-/// ConvergenceError if the integrator does not reach the last time
+/// @throws InputError if a moving rod does not support the scene, grippers move, there are
+/// obstacles, or the initial scene has another length or number of grippers;  ConvergenceError if
+/// there is no initial shape, or if the integrator does not reach the last time
 [[nodiscard]] ReleasedMotion release_rod(const ReleasedRod& rod, const std::vector<double>& times,
                                          const std::vector<double>& arc_length, int terms,
                                          const SolveOptions& options = {});
@@ -53,9 +54,9 @@ struct ReleasedMotion {
 /// @param segments  N, > 0
 /// @param times     growing, at equal distances, from 0 [s], two or more
 /// @return points by time [m], 3 x (N + 1)
-/// @throws InputError if the rod is not straight, round and of one section, or is not held by a
-/// single gripper at s = 0;  ConvergenceError if the constraints do not converge, or at the time
-/// limit
+/// @throws InputError as release_rod(), and if the rod is not straight, round and of one section,
+/// stretches, has distributed loads, or is not held by a single gripper at s = 0;  ConvergenceError
+/// if there is no initial shape, the constraints do not converge, or at the time limit
 [[nodiscard]] std::vector<Eigen::Matrix3Xd> hinge_motion(const ReleasedRod& rod, int segments,
                                                          const std::vector<double>& times,
                                                          const SolveOptions& options = {});

@@ -32,9 +32,9 @@ Eigen::VectorXd moments_beyond(const Eigen::Matrix3Xd& points, const Eigen::Matr
   return moments;
 }
 
-/// Returns EI kappa of the inner joints, without the joints adjacent to the ends: there discrete
-/// springs depend on the assumed position of the clamp. With another power the moments are
-/// EI / h c_max (c / c_max)^power, where c = 2 sin(angle / 2), c_max is its largest value and h the
+/// Returns EI kappa of the inner joints; zero at the joints adjacent to the ends, where discrete
+/// springs depend on the assumed position of the clamp. With another power the moments are EI / h
+/// c_max (c / c_max)^power, where c = 2 sin(angle / 2), c_max is its largest value and h the
 /// joint's length.
 Eigen::VectorXd bending_moments(const Scene& scene, const Shape& shape, double power) {
   const Eigen::Index n = shape.points.cols() - 1;
@@ -86,7 +86,7 @@ AnswerBounds bounds_between(const Solution& a, const Solution& b) {
 }
 
 /// Adds every other equilibrium that the energy model finds to the answer, and sets the smallest
-/// eigenvalue of the answer itself.
+/// eigenvalue of the answer itself and Answer::is_lowest.
 void add_other_equilibria(Answer& answer) {
   const std::vector<double>& s = answer.first.shape.arc_length;
   const AllSolutions all = solve_all(answer.battery_scene.scene, {}, s);

@@ -38,7 +38,8 @@ struct Answer {
   Solution second;             ///< the solution with which it was compared
   std::string second_method;   ///< name of the second method: "exact", "chain, N = 1024"
   AnswerBounds bounds;         ///< differences between both solutions
-  /// Other equilibria that a search has found, in the order of energy.
+  /// Other equilibria that a search has found, in the order of energy; none if the rod stretches,
+  /// since no search is then made.
   std::vector<OtherEquilibrium> others;
   bool is_lowest = true;  ///< whether no other stable equilibrium was found with less energy
 };
@@ -53,7 +54,8 @@ inline constexpr double method_tolerance = 1e-6;
 /// which has a discretisation error.
 inline constexpr double chain_method_tolerance = 2e-4;
 
-/// Solves a scene by both methods, compares them, and searches for other equilibria.
+/// Solves a scene by both methods, compares them, and, unless the rod stretches, searches for other
+/// equilibria.
 /// @throws ConvergenceError if a method does not converge, or if they do not agree
 [[nodiscard]] Answer certified_answer(const BatteryScene& scene);
 
@@ -76,8 +78,10 @@ struct MomentBalance {
 /// forces and torques of the grippers at its ends, for any stiffness and weight,
 ///     min over c, a, M, F of |c EI kappa_i - a w_i - m_i - M - (P_n - P_i) x F| / |c EI kappa_i|.
 /// w_i and m_i are the moments about P_i of the weight and of the other loads beyond it. At rest
-/// this fraction is a discretisation error. Returns std::nullopt unless the rod is round, straight,
-/// of one section, held only at its ends, and subject to nothing else.
+/// this fraction is a discretisation error. Joints adjacent to the ends are left out, and a is 1
+/// unless there are weight and other loads. Returns std::nullopt unless the rod is round, straight,
+/// of one section, held only at its ends, subject to nothing else, and bent, with at least six
+/// segments.
 /// @param shape  shape of the whole rod, in the scene's frame
 /// @param power  exponent of 2 sin(angle / 2) in the moments of the springs, > 0; 1: EI kappa
 [[nodiscard]] std::optional<MomentBalance> moment_balance(const Scene& scene, const Shape& shape,

@@ -40,7 +40,7 @@ struct BatteryScene {
 /// Benchmark set: scenes on which a simulator is run.
 struct Battery {
   std::string version;               ///< increases whenever a scene changes
-  std::vector<BatteryScene> scenes;  ///< by classes, in the order of the file
+  std::vector<BatteryScene> scenes;  ///< in the order of the file
 };
 
 /// Returns the set of data/suite, which is compiled into the library.

@@ -28,7 +28,7 @@ namespace {
 
 constexpr double none = std::numeric_limits<double>::quiet_NaN();
 
-/// Runs a simulator with N, 2N and 4N points.
+/// Runs a simulator with N, 2N and 4N points, up to the first run that is not supported.
 /// @param measure  called with each solved run; sets its error, or throws InputError
 CardScene run_scene(const BatteryScene& scene, const Simulator& simulator,
                     const CardOptions& options, const std::function<void(SimulatorRun&)>& measure) {

@@ -71,7 +71,7 @@ struct CardOptions {
 
 /// Runs simulators on scenes. Except for times, the results do not depend on the number of threads.
 /// A scene whose reference does not converge is RunStatus::not_judged.
-/// @throws OutputError
+/// @throws OutputError; InputError as the computation of a reference
 [[nodiscard]] std::vector<Card> make_cards(const std::string& battery_version,
                                            const std::vector<BatteryScene>& scenes,
                                            const std::vector<Simulator>& simulators,

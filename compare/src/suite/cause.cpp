@@ -158,7 +158,8 @@ class Diagnosis {
     }
   }
 
-  /// Whether the shape is that of a scene without one of its properties.
+  /// Adds a cause with this name if the shape is that of a scene without one of its properties, or
+  /// converges to it. @return whether it is
   bool is_scene_without(const Scene& without, const std::string& name) {
     try {
       const energy_model::Equilibrium rod = solve_reference(without, answer_model(without));

@@ -24,9 +24,10 @@ struct Cause {
 
 /// Shape of a scene by a simulator, with N points.
 struct CardShape {
-  int points = 0;    ///< N
-  Shape shape;       ///< shape of the whole rod, in the scene's frame
-  double error = 0;  ///< RMS distance from the reference, divided by the length [-]
+  int points = 0;  ///< N
+  Shape shape;     ///< shape of the whole rod, in the scene's frame
+  /// RMS distance from the reference, divided by the length; for a motion, motion_error() [-].
+  double error = 0;
 };
 
 /// Returns the order of convergence: p of e ~ N^-p, from the first shape to the last; NaN if there

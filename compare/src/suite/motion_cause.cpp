@@ -40,7 +40,7 @@ double rms_from(const MarkerMotion& recorded, const RodAt& rod) {
 using CausesLeft = std::vector<std::pair<Cause, double>>;
 
 /// Returns the fitted number of a cause with the RMS distance that it leaves [m]; that is infinite
-/// if the best number is at an end of its range. @param left  distance with a number
+/// if the best number is at an end of its range. @param residual  distance with a number
 Minimum best_parameter(double low, double high, const Function& residual) {
   constexpr int scan_steps = 100;
   const Scan scanned = scan(residual, low, high, scan_steps);

@@ -25,7 +25,7 @@ constexpr const char* answer_schema_name = "dlo/answer/1";
 constexpr const char* motion_schema_name = "dlo/motion/1";
 constexpr const char* pack_schema_name = "dlo/pack/1";
 
-/// Rounds to ten significant digits, and rounding errors to 0.
+/// Rounds to ten significant digits, and rounding errors to 0; returns NaN and infinity unchanged.
 /// @param large  magnitude of such quantities in the scene
 double rounded(double value, double large) {
   constexpr double rounding = 1e-11;
@@ -42,7 +42,7 @@ double bound(double value, double rounding) {
 
 /// Returns the bound of a number, or of a vector, including the rounding to ten digits.
 double bound_of_digits(double value, double size, double large) {
-  constexpr double rounding = 1e-10;  // half a unit of the last digit in each of three components
+  constexpr double rounding = 1e-10;  // typical; ten digits are exact to 5e-11 to 5e-10 of a number
   return bound(value, rounding * std::max(size, large));
 }
 

@@ -10,11 +10,11 @@ namespace dlo::compare {
 
 /// Returns an answer as a document with schema dlo/answer/1, in SI units. Numbers that are only
 /// rounding errors are 0. Points and their arc lengths have twelve decimals, bounds two significant
-/// digits, and other results ten or fewer.
+/// digits, and other results ten significant digits or fewer.
 [[nodiscard]] nlohmann::ordered_json answer_json(const Answer& answer);
 
-/// Returns a motion as a document with schema dlo/motion/1. Its lengths and times have nine
-/// decimals.
+/// Returns a motion as a document with schema dlo/motion/1. Its points, arc lengths and times have
+/// nine decimals.
 [[nodiscard]] nlohmann::ordered_json motion_json(const MotionAnswer& answer);
 
 /// Certified answers of a benchmark set.
@@ -30,6 +30,7 @@ struct Pack {
                                   const std::vector<BatteryScene>& scenes, int threads);
 
 /// Checks that a folder contains no file that write_pack() would replace but did not write itself.
+/// ID.csv and ID.vtu count as written by it if ID.json has the schema of an answer.
 /// @throws InputError that names the file
 void require_own_pack(const std::string& folder, const std::vector<BatteryScene>& scenes);
 
