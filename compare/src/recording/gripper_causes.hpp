@@ -16,7 +16,8 @@ namespace dlo::compare {
 /// @param options    options of the track of the rod
 /// @param at_rest    the rod at rest with these options
 /// @param residuals  as motion_residuals() [m]
-/// @return both causes for each gripper; none for a gripper that cannot be displaced
+/// @return both causes for each gripper; only the first one if frames have fewer than two points in
+/// the mean, and none for a gripper that cannot be displaced
 [[nodiscard]] std::vector<MotionCause> gripper_causes(const Scene& scene,
                                                       const TrackOptions& options,
                                                       const MarkerMotion& recorded,

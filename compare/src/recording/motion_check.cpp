@@ -74,7 +74,8 @@ TrackOptions track_options(const Scene& scene, const RecordedTimes& times,
   return options;
 }
 
-/// Returns the model of the frames; std::nullopt if they do not reach the recording's end.
+/// Returns the model of the frames; std::nullopt if they are fewer than four or do not reach the
+/// recording's end.
 template <typename Frames, typename Points>
 std::optional<ModelMotion> motion_model(const Frames& frames, const Points& points_of,
                                         const Scene& scene, const TrackOptions& options,
@@ -92,7 +93,9 @@ std::string stop_text(const std::optional<TrackStop>& stop) {
   return stop ? fmt::format("stopped at {:g} s: {}", stop->time, stop->why) : "has too few frames";
 }
 
-/// Adds the rod at rest. Returns why it stopped before its last frame; std::nullopt if it did not.
+/// Adds the rod at rest. Returns why it stopped before its last frame; std::nullopt if it did not,
+/// or if it has no first frame and the rod with inertia is judged. @throws ConvergenceError if it
+/// has none and is judged
 std::optional<TrackStop> add_at_rest(const Scene& scene, double last,
                                      const MotionCheckRequest& request, const Progress& progress,
                                      Models& models) {
@@ -108,9 +111,9 @@ std::optional<TrackStop> add_at_rest(const Scene& scene, double last,
   }
 }
 
-/// Adds the rod with inertia. If the scene has no start, and no time at which it begins in
-/// equilibrium is given, the start is fitted to the recording. The rod with inertia needs no
-/// equilibria during the motion, which a fast motion of the grippers may not have.
+/// Adds the rod with inertia. If it is judged, the scene has no start, and no time at which it
+/// begins in equilibrium is given, the start is fitted to the recording. The rod with inertia needs
+/// no equilibria during the motion, which a fast motion of the grippers may not have.
 void add_inertia(const Scene& scene, const MarkerMotion& recorded,
                  const MotionCheckRequest& request, Models& models) {
   const TrackOptions& options = models.options;
@@ -161,8 +164,9 @@ Models run_models(const Scene& scene, const MarkerMotion& recorded,
   return models;
 }
 
-/// Searches for causes that explain a recording. Causes with fewer numbers are tried first; one
-/// with more numbers must leave a smaller deviation than those before it.
+/// Searches for causes that explain a recording. Causes with fewer numbers are tried first; each
+/// must leave at most `recording_left` (a path: `path_left`) of the deviation that those before it
+/// leave.
 class CauseSearch {
  public:
   CauseSearch(const MotionCheck& check, const Models& models, const MarkerMotion& recorded)

@@ -59,7 +59,7 @@ struct MotionCheckRequest {
 struct MotionCause {
   /// Kinds of causes.
   enum class Kind {
-    lag,           ///< the recording is late
+    lag,           ///< the recording is late or early
     offset,        ///< the whole recording is displaced
     model,         ///< the recording has no inertia, or the rod has none
     gripper,       ///< a gripper is displaced

@@ -66,8 +66,9 @@ struct MotionFit {
 /// whole recording.
 /// @param scene   its grippers have the trajectories that moved them
 /// @param stages  called before each simulation
-/// @throws InputError if the scene cannot move like this, or a recording does not belong to it;
-/// ConvergenceError if no simulation reaches its end
+/// @throws InputError if the scene cannot move like this, a recording does not belong to it or has
+/// too few rows, or the rod does not move at the markers; ConvergenceError if no simulation reaches
+/// its end
 [[nodiscard]] MotionFit fit_motion(const Scene& scene, const std::vector<MarkerMotion>& recordings,
                                    const MotionFitOptions& options, const Stages& stages = {});
 

@@ -36,8 +36,8 @@ LagrangeWeights neighbours(double at, Eigen::Index count) {
   return result;
 }
 
-/// Number of lags that are scanned before Brent's method, and largest number of points used for the
-/// scan. With all 1e6 points of a recording it would take a minute.
+/// Number of lags that are scanned before Brent's method, and approximate largest number of points
+/// used for both. With all 1e6 points of a recording it would take a minute.
 constexpr int lag_steps = 200;
 constexpr std::size_t most_tried_points = 20'000;
 

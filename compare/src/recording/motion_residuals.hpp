@@ -102,11 +102,12 @@ inline constexpr double lag_range_share = 0.25;
 /// Returns the mean displacement without a lag.
 [[nodiscard]] MotionShift best_offset(const MarkerMotion& recorded, const ModelMotion& model);
 
-/// Returns the shift with the least mean square distance of all points.
+/// Returns the shift with the least mean square distance of the points. Of more than 20000 points
+/// it uses every n-th time only.
 /// @param earliest  time before which the rod is not known [s]; points whose shifted time may be
 /// earlier are omitted
-/// @return std::nullopt if the least distance is at an end of the range, or fewer than eight points
-/// are left
+/// @return std::nullopt if the least distance is at an end of the range, fewer than eight points
+/// are left, the recording has one time, or the model ends no later than the recording
 [[nodiscard]] std::optional<MotionShift> best_lag(const MarkerMotion& recorded,
                                                   const ModelMotion& model, double earliest,
                                                   Displacement displacement);
