@@ -60,9 +60,9 @@ using energy_model::Equilibrium;
 constexpr int most_branch_steps = 96;
 constexpr int most_snaps = 4;
 
-/// Number of smallest steps beyond the last shape within which an extrapolated quantity must vanish
-/// for a branch to have ended. It is larger than 1 because the smallest eigenvalue has a vertical
-/// tangent at a fold, so that a straight line through two values reaches zero late.
+/// Number of steps of the rejected size beyond the last shape within which an extrapolated quantity
+/// must vanish for a branch to have ended. It is larger than 1 because the smallest eigenvalue has
+/// a vertical tangent at a fold, so that a straight line through two values reaches zero late.
 constexpr double extrapolation_steps = 4;
 
 /// Energy differences that rounding and the solver's tolerance may cause, divided by EI/l plus the
@@ -82,7 +82,8 @@ void require_grippers_clear(const Scene& now) {
   }
 }
 
-/// Returns the rotation vector of the shortest rotation from one direction to another [rad].
+/// Returns the rotation vector of the shortest rotation from one direction to another [rad]; zero
+/// if they are parallel or opposite.
 Eigen::Vector3d turn_between(const Eigen::Vector3d& from, const Eigen::Vector3d& to) {
   const Eigen::Vector3d across = from.cross(to);
   const double sine = across.norm();

@@ -43,15 +43,15 @@ struct Passage {
                                    ///< before, and the energy balances
   bool has_smaller_steps = false;  ///< whether steps smaller than a frame were made
   bool is_stationary = false;      ///< whether nothing moved
-  /// If the branch was not kept: whether its end was observed, as loss of stability or as a
-  /// vanishing contact force.
+  /// If the branch was not kept: whether the end of each branch left was observed, as loss of
+  /// stability or as a vanishing contact force.
   bool end_was_observed = false;
   /// Smallest eigenvalue of the last shape on a branch that was not kept, divided by EI/l [-].
   double last_eigenvalue = std::numeric_limits<double>::quiet_NaN();
   double work = 0;  ///< work of grippers and obstacles on the rod [J]
   /// Work minus the increase of the energy, for a branch that was not kept only of its snaps, and
-  /// the bound of its error by forces between those before and after each step [J]. NaN if
-  /// Branch::has_energy_balance() is false.
+  /// the bound of its error by forces between those before and after each step [J]. `released` is
+  /// NaN if Branch::has_energy_balance() is false.
   double released = 0, released_bound = 0;
 };
 
@@ -76,10 +76,10 @@ struct BranchSample {
 /// as long as the branch exists.
 ///
 /// A step keeps the branch if Newton's method converges to a stable shape close to the one before,
-/// the energy increases by the work within the bound for forces between those of both shapes, and
-/// the rod does not pass through an obstacle. If a step of a whole frame does not, smaller steps
-/// are made, down to `smallest_step` of a frame. Beyond the end of the branch the rod takes the
-/// shape that a search finds there, and is followed from it.
+/// the energy increases by the work within the bound for forces between those of both shapes (if
+/// has_energy_balance()), and the rod does not pass through an obstacle. If a step of a whole frame
+/// does not, smaller steps are made, down to `smallest_step` of a frame. Beyond the end of the
+/// branch the rod takes the shape that a search finds there, and is followed from it.
 class Branch {
  public:
   /// Size of a step, in frames, down to which the end of a branch is located.

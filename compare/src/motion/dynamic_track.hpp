@@ -59,7 +59,7 @@ struct DynamicTrack {
 /// of the force model's are measured against it.
 /// @param track  of the same scene and options
 /// @throws InputError as require_dynamic(), and if the damping is out of range; ConvergenceError if
-/// there is no initial shape
+/// there is no initial shape, or if the first frame is not reached
 [[nodiscard]] DynamicTrack dynamic_track(const Scene& scene, const Track& track,
                                          const TrackOptions& options, const RodDamping& damping);
 
@@ -83,8 +83,8 @@ struct TrackResult {
 };
 
 /// Follows the motion of a scene.
-/// @throws InputError, ConvergenceError as track() and dynamic_track(), and if a rate is out of
-/// range
+/// @throws InputError, ConvergenceError as track() and dynamic_track(); InputError if a rate is out
+/// of range, or fewer than two samples are requested
 [[nodiscard]] TrackResult follow(const Scene& scene, const TrackRequest& request,
                                  const Progress& progress = {});
 
