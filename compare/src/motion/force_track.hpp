@@ -42,7 +42,7 @@ struct TrackErrors {
 
 /// Summary of the force model's frames, with their errors.
 struct ForceTrackSummary : TrackErrors {
-  std::string missing_reason;  ///< why there are no frames; empty if there are
+  std::string missing_reason;  ///< why frames are missing; empty if none is
   long steps_per_frame = 0;    ///< number of steps of the stepper
   double rest_error = 0;  ///< error of the first frame, at rest without lag, over the length [-]
   double median_seconds = 0;  ///< median duration of a frame's steps [s]
@@ -50,7 +50,7 @@ struct ForceTrackSummary : TrackErrors {
   /// remaining RMS distance over all frames, over the length. NaN if the motion is too small.
   double lag = std::numeric_limits<double>::quiet_NaN();  ///< [s], >= 0
   double error_without_lag = std::numeric_limits<double>::quiet_NaN();
-  std::vector<std::string> neglected;  ///< see Solution::neglected
+  std::vector<std::string> neglected;  ///< not used, always empty
 };
 
 /// The force model of a scene in simulated time; it starts at rest.
@@ -88,9 +88,9 @@ struct Lag {
   double rms = std::numeric_limits<double>::quiet_NaN();   ///< remaining RMS distance [m]
 };
 
-/// Returns the lag with the least mean square distance over all frames; before its first frame the
-/// leader is taken to rest. NaN if the leader does not move, or if its first shape throughout is
-/// the best match, as for a follower that moves elsewhere.
+/// Returns the lag with the least mean square distance over the frames, of 800 frames or more over
+/// every n-th; before its first frame the leader is taken to rest. NaN if the leader does not move,
+/// or if its first shape throughout is the best match, as for a follower that moves elsewhere.
 /// @param leader, follower  shapes at equal time steps [m], the same number of each
 /// @param step              time step [s]
 [[nodiscard]] Lag estimate_lag(const std::vector<Eigen::Matrix3Xd>& leader,

@@ -23,12 +23,13 @@ struct MotionPart {
 /// Times of the frames of a motion.
 class FrameClock {
  public:
-  /// @throws InputError if nothing moves, no time passes, or there are too many frames
+  /// @throws InputError if nothing moves (unless the scene has a start and `to` is given), no time
+  /// passes, or there are too many frames
   FrameClock(const Scene& scene, const MotionPart& part, const TrackRates& rates);
 
   [[nodiscard]] std::size_t frames() const { return steps_ + 1; }
   [[nodiscard]] double time(std::size_t frame) const;  ///< time of a frame [s]
-  /// Returns the time of the last update of the obstacles [s].
+  /// Returns the time of the last update of the obstacles up to the time of a frame [s].
   [[nodiscard]] double obstacle_time(std::size_t frame) const;
   /// Returns the scene at the time of a frame, with grippers and obstacles at rest.
   [[nodiscard]] Scene scene(const Scene& scene, std::size_t frame) const;

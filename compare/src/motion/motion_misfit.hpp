@@ -32,11 +32,12 @@ class MotionMisfit {
                std::vector<MotionParameter> fitted, const RodDamping& known,
                const SolveOptions& solve, Stages stages = {});
 
-  /// Restricts each recording to its first `seconds` seconds.
+  /// Restricts each recording to its first `seconds` seconds, but to no fewer than two frames.
   void restrict_to(double seconds);
   /// Returns the largest duration of a recording [s].
   [[nodiscard]] double duration() const { return duration_; }
-  /// Returns the natural time sqrt(m l^3 / EI) of the scene as given [s].
+  /// Returns the natural time sqrt(m l^3 / EI) of the scene as given, with the smaller EI of two
+  /// [s].
   [[nodiscard]] double natural_time() const { return natural_time_; }
 
   [[nodiscard]] const std::vector<MotionParameter>& fitted() const { return fitted_; }
@@ -64,16 +65,19 @@ class MotionMisfit {
   }
   /// Returns the nearest logarithm in the range of a physical parameter.
   [[nodiscard]] static double within_bounds(double log);
-  /// Whether the logarithm of a physical parameter is at a bound of its range.
+  /// Whether the logarithm of a physical parameter is at a bound of its range, within 1 % of the
+  /// bound.
   [[nodiscard]] static bool at_bound(double log);
   [[nodiscard]] RodDamping damping(const Eigen::VectorXd& parameters) const;
   /// Returns the start of a recording; std::nullopt: it starts in equilibrium.
   [[nodiscard]] std::optional<MotionStart> start(const Eigen::VectorXd& parameters,
                                                  std::size_t recording) const;
 
-  /// Returns simulated minus recorded coordinates [m]; the rod length if a simulation ends early.
+  /// Returns simulated minus recorded coordinates [m]; the rod length for all coordinates of a
+  /// recording whose simulation ends early.
   [[nodiscard]] Eigen::VectorXd residuals(const Eigen::VectorXd& parameters);
-  /// Computes derivatives of the residuals by differences. @param here  residuals at the parameters
+  /// Computes derivatives of the residuals by differences; by a damping, they are derivatives by
+  /// its relative change. @param here  residuals at the parameters
   /// @param first  index of the first physical parameter whose column is computed; the columns of
   /// earlier physical parameters are zero, those of the modes of starts are always computed
   [[nodiscard]] Eigen::MatrixXd derivatives(const Eigen::VectorXd& parameters,
@@ -129,10 +133,11 @@ struct LeastSquares {
 /// Minimises the sum of squares by the Levenberg-Marquardt method. Derivatives are kept while steps
 /// with them converge fast.
 /// @param free  index of the first fitted parameter; those before are constant
+/// @throws ConvergenceError if a simulation with the start ends early
 [[nodiscard]] LeastSquares least_squares(MotionMisfit& misfit, const Eigen::VectorXd& start,
                                          int most_steps, Eigen::Index free = 0);
 
-/// Fits the start of a recording to its first second, or to a natural period if that is longer,
+/// Fits the start of a recording to its first second, or to the natural time if that is longer,
 /// without changes to the scene.
 /// @return std::nullopt if the recording has too few markers
 [[nodiscard]] std::optional<MotionStart> recorded_start(const Scene& scene,

@@ -112,7 +112,7 @@ std::size_t leading_rows(const std::vector<MarkerPosition>& rows, std::set<doubl
   return count;
 }
 
-/// Whether no interval of half of the rod is without a point.
+/// Whether no interval longer than half of the rod is without a point.
 bool are_dense(const std::set<double>& arc_lengths, double length) {
   constexpr double largest_marker_gap_share = 0.5;
   double before = 0;

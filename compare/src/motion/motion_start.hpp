@@ -21,12 +21,12 @@ struct MotionStart {
 inline constexpr int start_frames = 11;
 
 /// Fits polynomials of arc length and time to the first frames of a recording, or to its only
-/// frame, whose rod is then at rest. The polynomials satisfy the positions and directions of the
-/// grippers.
+/// frame, whose rod is then at rest. The positions and directions of the grippers have so large
+/// weights that the polynomials nearly satisfy them.
 /// @param scene  its grippers may move
 /// @param begin  time at which the rod starts [s]
 /// @return std::nullopt if the points of the first frames are too few for a shape: fewer than four
-/// including those that grippers hold, or none in an interval of half of the rod
+/// including those that grippers hold, or none in an interval longer than half of the rod
 [[nodiscard]] std::optional<MotionStart> smooth_start(const Scene& scene, const MarkerMotion& rows,
                                                       double begin);
 
@@ -43,7 +43,8 @@ class StartDeviation {
   [[nodiscard]] static Eigen::Index size() { return 4 * start_modes; }
   /// Returns the start with rotated tangents, and with the velocities of points due to angular
   /// rates of the tangents, both across the tangents. Angles and rates are sums of Legendre's
-  /// polynomials of arc length.
+  /// polynomials of arc length, for a clamped rod without the constant one and minus their values
+  /// at s = 0.
   /// @param modes  angles [rad], start_modes in each of two directions across the rod, then angular
   /// rates [rad/s]
   [[nodiscard]] MotionStart with(const Eigen::VectorXd& modes) const;

@@ -70,8 +70,8 @@ inline constexpr double usual_step_tolerance = 1e-7;
 /// move then, it has the velocities with which its equilibria follow them.
 class MovingScene {
  public:
-  /// @throws InputError as require_dynamic(), and if the damping is out of range; ConvergenceError
-  /// if there is no initial shape
+  /// @throws InputError as require_dynamic(), and if the energy model rejects the scene;
+  /// ConvergenceError if there is no initial shape
   MovingScene(const Scene& scene, const FrameClock& clock, const RodDamping& damping,
               const SolveOptions& solve, std::optional<MotionStart> start = {});
 
@@ -80,7 +80,8 @@ class MovingScene {
   [[nodiscard]] bool in_motion() const { return in_motion_; }
   /// Simulates the rod.
   /// @param times  growing, of the scene [s]
-  /// @param terms  0: as many as needed
+  /// @param terms  0: 12, or up to 32 if the integration fails with fewer
+  /// @throws InputError if the damping is out of range
   [[nodiscard]] SimulatedMotion run(const std::vector<double>& times, int terms,
                                     double tolerance = usual_step_tolerance) const;
 

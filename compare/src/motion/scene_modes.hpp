@@ -76,7 +76,7 @@ struct SceneMode {
   energy_model::VibrationMode rod;
   std::optional<double> polygon_omega;  ///< frequency of the polygon with the rod's masses [rad/s]
   double polygon_kinetic_share = 0;     ///< see PolygonModes::Match::kinetic_share [-]
-  std::optional<SteppedMode> stepped;   ///< with the scene's own c_F and c_h
+  std::optional<SteppedMode> stepped;   ///< with the scene's c_F and c_h; only stepper `dynamic`
 };
 
 /// Step constants with which each point has the mean mass of the rod's points, and the damping is
@@ -96,7 +96,7 @@ struct SceneModes {
   std::vector<SceneMode> modes;                ///< the slowest first
   std::optional<double> tension;               ///< tension of a rod that clamps hold straight [N]
   std::string missing_polygon_reason;          ///< why the polygon has no modes; empty if it has
-  std::optional<double> effective_point_mass;  ///< m* = dt^2 / c_F of the scene's stepper [kg]
+  std::optional<double> effective_point_mass;  ///< m* = dt^2 / c_F; only `dynamic` [kg]
   std::optional<PhysicalSteps> physical;
 };
 

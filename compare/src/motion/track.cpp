@@ -101,7 +101,7 @@ class Tracker {
   }
 
  private:
-  /// Adds a frame. @return false if it has no shape
+  /// Adds a frame. @return false if the track ends before it
   bool add(std::size_t index) {
     const double time = clock_.time(index);
     const Timer timer;
@@ -144,6 +144,7 @@ class Tracker {
   }
 
   /// Checks the turns. @return whether the shape has the turns that the clamps hold
+  /// @throws ConvergenceError if the first frame does not have them
   bool has_prescribed_turns(const Scene& now, const TrackFrame& frame) {
     const double time = clock_.time(result_.frames.size());
     if (result_.frames.empty()) {
@@ -164,7 +165,7 @@ class Tracker {
     return false;
   }
 
-  /// Adds work and energy, and a snap if there is one.
+  /// Adds work and energy, and a snap or a loss of the branch if there is one.
   /// @return false if the work done does not allow the energy of the shape
   bool add_energy_balance(const Passage& passage, TrackFrame& frame) {
     frame.work = result_.frames.back().work + passage.work;

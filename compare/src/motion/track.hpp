@@ -96,12 +96,13 @@ struct Track {
   std::vector<TrackFrame> frames;  ///< up to the one at which it stopped; one or more
   std::vector<TrackEvent> events;  ///< by time
   std::optional<TrackStop> stopped;
-  /// Median duration of a frame of the energy model in which something moves [s].
+  /// Median duration of a frame of the energy model in which something moves, without the first
+  /// frame unless there is no other [s].
   double median_seconds = 0;
   int lost_frames = 0;  ///< number of frames whose shape was found by a search, on another branch
                         ///< or on the same
   int repeated_frames = 0;             ///< number of frames that needed smaller steps on the branch
-  std::vector<std::string> neglected;  ///< see Solution::neglected
+  std::vector<std::string> neglected;  ///< not used, always empty
   ForceTrackSummary force;
 };
 
@@ -114,8 +115,9 @@ struct Track {
 /// The track ends early (stopped) at an invalid frame, such as one with grippers farther apart than
 /// the rod between them. It also ends if a solver does not converge, if it finds a shape with more
 /// energy than the work allows, or if the rod passes through itself (Linking).
-/// @throws InputError if nothing moves, the interval is no part of the motion, or the first frame
-/// is invalid; ConvergenceError if the first frame has no shape or one that has lost turns
+/// @throws InputError if nothing moves, no time passes, there are too many frames or points, or the
+/// first frame is invalid; ConvergenceError if the first frame has no shape or one that has lost
+/// turns
 [[nodiscard]] Track track(const Scene& scene, const TrackOptions& options,
                           const Progress& progress = {});
 

@@ -24,7 +24,7 @@ constexpr double negligible_movement = 1e-6;
 /// factor of ten to each side.
 constexpr double largest_half_interval = 2.3;
 
-/// Bounds of the first window [s]. The window is a natural period, in which vibrations cannot be a
+/// Bounds of the first window [s]. The window is the natural time, in which vibrations cannot be a
 /// whole period late.
 constexpr double shortest_window = 1;
 constexpr double longest_window = 2;
