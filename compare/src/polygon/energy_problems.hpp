@@ -29,7 +29,8 @@ struct ChainScene {
                                                     const ForceModelSettings& settings);
 
 /// Returns a polygon as a problem of the solver for elastic polygons, which takes every scene.
-/// @param joint_law  replaces the law of the rod (ForceModelSettings::joint_law)
+/// @param joint_law  replaces the law hooke of the rod (ForceModelSettings::joint_law); the law
+/// paper is kept
 [[nodiscard]] energy_model::PolygonProblem polygon_problem(
     const force_model::Rod& rod, std::optional<energy_model::JointLaw> joint_law = std::nullopt);
 

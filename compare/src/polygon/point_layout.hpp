@@ -37,7 +37,8 @@ void require_slack(const Scene& scene);
 /// Checks that the held segments leave enough rod between neighbouring grips. With few points held
 /// segments are long: they may leave too little rod, or a single segment that would have to be
 /// shortened.
-/// @throws InputError with the number of points that suffices.
+/// @throws InputError with the number of points that suffices, or without a number if more than
+/// 3000 further points would be needed
 /// @param grips  result of grips_of()
 void require_feasible_grips(const Scene& scene, const ForceModelSettings& settings,
                             const Layout& layout, const std::vector<force_model::Grip>& grips);
@@ -59,12 +60,12 @@ enum class Side {
 
 /// Returns a curve through all grips with the right length between them [m], 3 x M, from which a
 /// search or a simulation starts. Beyond the outermost grips it is straight. Between two it is a
-/// cubic with the grips' directions (a pin takes the direction of the line between its neighbours)
-/// and, if the cubic is shorter than the rod, an additional arch with zero slope at the grips, in
-/// the direction of the load across the line between them. Without such a load the arch follows the
-/// clamps' directions, or else +x (+y if the grips lie along x). Every arch leaves its plane by a
-/// millionth of its length, so that a search can leave a shape that is unstable out of plane. No
-/// two neighbouring points coincide.
+/// cubic with the grips' directions (a pin takes the direction of the line between its neighbours,
+/// a single pin that of the load) and, if the cubic is shorter than the rod, an additional arch
+/// with zero slope at the grips, in the direction of the load across the line between them. Without
+/// such a load the arch follows the clamps' directions, or else +x (+y if the grips lie along x).
+/// Every arch leaves its plane by a millionth of its length, so that a search can leave a shape
+/// that is unstable out of plane. No two neighbouring points coincide.
 /// @param along  indices of the grippers in the order of their arc lengths
 [[nodiscard]] Eigen::Matrix3Xd start_shape(const Scene& scene,
                                            const std::vector<std::size_t>& along,
@@ -90,9 +91,9 @@ inline constexpr double dynamic_share = 0.9;
 /// straight ones.
 inline constexpr double verlet_step_share = 0.5;
 
-/// Returns the stepper that a scene selects. Constants that the scene does not give have Table 1's
-/// proportions. The stepper `verlet` takes verlet_step_share and damps the slowest mode, as
-/// mode_bounds estimates it, critically; `implicit` needs no masses.
+/// Returns the stepper that a scene selects. If the scene does not give them, c_F and l_s have
+/// Table 1's proportions and c_h is dynamic_share. The stepper `verlet` takes verlet_step_share and
+/// damps the slowest mode, as mode_bounds estimates it, critically; `implicit` needs no masses.
 [[nodiscard]] force_model::StepOptions step_options(const ForceModelSettings& settings,
                                                     const Discretisation& discretisation);
 

@@ -27,12 +27,13 @@ struct Minimum {
 
 /// Finds a minimum near the best point of a bracketed scan by GSL's Brent minimiser. The iteration
 /// ends if the step after a short one, or the interval, is shorter than `tolerance` in x. Returns
-/// the best point of a scan that is not bracketed.
+/// the best point of a scan that is not bracketed, or next to whose best point the function is not
+/// finite.
 [[nodiscard]] Minimum minimum_near(const Function& function, const Scan& scan,
                                    double tolerance = 1e-7);
 
 /// Finds the argument at which a function crosses `level`, to `tolerance`, by GSL's Brent root
-/// finder.
+/// finder. Returns `outside` if the function does not cross `level` between both arguments.
 /// @param inside  where the function is below `level`
 /// @param outside  where it is above
 [[nodiscard]] double find_crossing(const Function& function, double inside, double outside,

@@ -9,7 +9,7 @@
 namespace dlo::compare {
 
 /// Returns the sums of the loads that depend on the shape, drag and forces that follow the rod, on
-/// the part of the rod before each arc length [N]. As in a tension, the sum at the rod's end
+/// the part of the rod up to each arc length [N]. As in a tension, only the sum at the rod's end
 /// excludes forces that act there. Drag is integrated by Gauss's rule between the points at which
 /// the derivative of the tangent has kinks.
 [[nodiscard]] std::vector<Eigen::Vector3d> shape_loads_before(

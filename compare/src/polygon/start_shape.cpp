@@ -27,7 +27,7 @@ Eigen::Vector3d across(const Eigen::Vector3d& vector, const Eigen::Vector3d& axi
 }
 
 /// Returns the unit vector perpendicular to an axis that is nearest to +x, or to +y for an axis
-/// along x. The same convention applies in the whole project.
+/// within about 26 degrees of the x axis. The same convention applies in the whole project.
 Eigen::Vector3d any_across(const Eigen::Vector3d& axis) {
   const Eigen::Vector3d towards =
       std::abs(axis.x()) < 0.9 ? Eigen::Vector3d::UnitX() : Eigen::Vector3d::UnitY();
