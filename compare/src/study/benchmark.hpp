@@ -67,7 +67,7 @@ struct BenchmarkRun {
 };
 
 /// Returns the setting in words: law and convention, for `force` also stepper and c_c, for `energy`
-/// "K as needed" if K is not fixed.
+/// "K as needed" if K is not fixed; empty for `exact` and programs.
 [[nodiscard]] std::string setting_of(const BenchmarkRun& run);
 
 /// Returns model, size and setting in words.
@@ -113,7 +113,7 @@ struct BenchmarkReport {
   std::vector<SceneBenchmark> scenes;  ///< results in the given order
   std::vector<std::string> skipped;  ///< runs that did not fit into the budget or did not converge
   std::vector<BenchmarkFailure> failures;  ///< failed runs of programs, in the order of the runs
-  /// How the first shape of each program was interpreted, one line each.
+  /// How the first shape of each program on each scene was interpreted, one line per note.
   std::vector<std::string> notes;
   double seconds = 0;  ///< wall time of the benchmark [s]
 };
@@ -147,7 +147,7 @@ void mark_pareto_front(std::vector<BenchmarkRun>& runs);
 /// (measured before; at least one), or one step with stepper implicit. The error is measured in
 /// every tenth frame, against the quasi-static shape of the reference model.
 /// @param scenes    empty: benchmark_scenes()
-/// @param progress  called with the name of the current stage
+/// @param progress  called with the name of each scene
 /// @throws std::invalid_argument if an option is out of range, InputError, ConvergenceError
 [[nodiscard]] BenchmarkReport run_benchmark(const std::vector<Scene>& scenes,
                                             const BenchmarkOptions& options = {},

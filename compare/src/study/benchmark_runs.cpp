@@ -173,8 +173,9 @@ std::vector<BenchmarkRun> StaticRuns::runs() const {
   return all;
 }
 
-/// Runs a model or a program with one size. If a polygon or a program does not fit into the budget,
-/// or a program reaches its time limit, larger ones are not run; after another failure they are.
+/// Runs a model or a program with one size. If a polygon or a program does not fit into the budget
+/// or throws, or a program reaches its time limit, larger ones are not run; after another failure
+/// of a program they are.
 void StaticRuns::run(StaticSeries& series, int size) {
   const bool is_program = series.program != nullptr;
   BenchmarkRun run{.scene = scene_.name, .model = series.model, .size = size};

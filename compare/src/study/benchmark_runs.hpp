@@ -25,7 +25,7 @@ class Stopwatch {
 
   /// Runs `work` repeatedly, which returns its time [s], until the times are enough or one is NaN.
   /// Returns std::nullopt if one run is predicted to take more than a quarter of the remaining
-  /// budget, or if `work` throws.
+  /// budget, if no time is left, or if `work` throws.
   [[nodiscard]] std::optional<Timing> time(const std::string& name, double predicted_s,
                                            const std::function<double()>& work);
 
@@ -77,7 +77,7 @@ class StaticRuns {
 
   /// Runs one round; returns false if no run is left.
   bool next_round();
-  /// Returns all runs so far, ordered by model and size.
+  /// Returns all runs so far, ordered by model, setting and run.
   [[nodiscard]] std::vector<BenchmarkRun> runs() const;
   /// Returns the failed runs of programs so far.
   [[nodiscard]] const std::vector<BenchmarkFailure>& failures() const { return failures_; }

@@ -147,7 +147,7 @@ StabilityResult run_with_reference(const energy_model::PolygonResult& reference,
 
 /// Whether a sequence of shapes oscillates. Two conditions hold: the sum of their movements exceeds
 /// three times the distance from the first shape to the last, and it exceeds `threshold` [m] (RMS
-/// over the points).
+/// over the points). Fewer than three shapes do not oscillate.
 bool oscillates(const std::vector<Eigen::Matrix3Xd>& shapes, double threshold) {
   if (shapes.size() < 3) return false;
   double path = 0;

@@ -35,8 +35,9 @@ struct Choices<Outcome> {
 struct SimulationEnd {
   bool finite = false;   ///< whether no step has diverged
   bool at_rest = false;  ///< whether rest is proved, see force_model::Simulation::relax
-  /// Shapes at equal intervals over the last half of the steps, the final one last [m], 3 x N each.
-  /// The final shape alone suffices if it is at rest.
+  /// Shapes at equal intervals over the last half of the steps, or over all steps of the case that
+  /// starts at rest, the final one last [m], 3 x N each. The final shape alone suffices if it is at
+  /// rest.
   std::vector<Eigen::Matrix3Xd> late_shapes;
   std::vector<Eigen::Matrix3Xd> last_shapes;  ///< shapes of the last consecutive steps [m]
 };
@@ -46,10 +47,11 @@ struct SimulationEnd {
 [[nodiscard]] double largest_distance(const Eigen::Matrix3Xd& points,
                                       const Eigen::Matrix3Xd& reference);
 
-/// Classifies the end of a simulation by the first case that applies: `diverges` if it is farther
-/// than ten lengths from the reference; `pass` if the final shape, and each late shape unless the
-/// rod is at rest, is within the tolerance; `oscillates` if the rod is not at rest and its late or
-/// last shapes oscillate by more than the tolerance; else `wrong`.
+/// Classifies the end of a simulation by the first case that applies: `diverges` if a step has
+/// diverged, there is no late shape, or the final shape is not within ten lengths of the reference;
+/// `pass` if the final shape, and each late shape unless the rod is at rest, is within the
+/// tolerance; `oscillates` if the rod is not at rest and its late or last shapes oscillate by more
+/// than the tolerance; else `wrong`.
 /// @param reference  shape to be reached [m], 3 x N
 /// @param length     length of the rod [m], > 0;  @param tolerance  divided by the length [-], > 0
 [[nodiscard]] Outcome classify(const SimulationEnd& trajectory, const Eigen::Matrix3Xd& reference,
@@ -105,7 +107,7 @@ struct StabilityResult {
 
 /// Runs every selected hard case with every selected stepper: cases in the order of hard_cases(),
 /// for each case the steppers in turn. Results do not depend on the number of threads.
-/// @throws InputError if the name of no case contains StabilityOptions::name_contains,
+/// @throws InputError if no case is selected by StabilityOptions::name_contains and `excluded`,
 /// ConvergenceError
 [[nodiscard]] std::vector<StabilityResult> stability(const StabilityOptions& options = {});
 

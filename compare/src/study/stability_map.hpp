@@ -28,8 +28,8 @@ struct MapPoint {
   double c_c = 0;  ///< stretch stiffness of the segments [N]
   double c_h = 0;  ///< fraction of the last movement that a step adds [-]
   double c_F = 0;  ///< step factor: movement divided by force [m/N]
-  /// `pass`: the disturbance did not grow; `oscillates`: it grew, but within bounds; else
-  /// `diverges`.
+  /// `pass`: the disturbance grew at most a hundredfold; `oscillates`: it grew more, but to less
+  /// than ten lengths; else `diverges`.
   Outcome outcome = Outcome::diverges;
 };
 
@@ -60,7 +60,7 @@ struct StabilityMap {
 /// Every rod starts at its rest shape, disturbed by 1e-6 of its length (RMS, the same disturbance
 /// for all; in space, or in its plane if its joints have natural angles). Rods are stepped in
 /// vectorised batches of eight, on as many threads as allowed. A rod is stable if the disturbance
-/// has grown by less than a factor of a hundred at every sample. `measured` is then refined by
+/// has grown by at most a factor of a hundred at every sample. `measured` is then refined by
 /// bisection between the last stable and the first unstable c_F of the grid.
 ///
 /// c_c ranges from EI/L^2, where bending is stiffer than contraction, to AE at c_h = 0; c_h ranges
