@@ -11,7 +11,7 @@ struct ChildOutcome {
   /// Clause that states why the program failed, without its own output; empty on success.
   std::string problem;
   bool too_long = false;  ///< whether the program was killed at the time limit
-  int exit_status = 0;    ///< exit status of the program; 0 too if a signal ended it
+  int exit_status = 0;    ///< exit status of the program; 0 too if it did not exit by itself
 };
 
 /// Working directory of a program, and files for its output.

@@ -47,7 +47,7 @@ class ProgramFolder {
   [[nodiscard]] std::string file(const char* name) const { return folder_.path() / name; }
 
   /// Returns the file named `shape`, or the only one whose name begins with "shape."; empty if
-  /// there is none. @throws InputError if the program has removed the folder
+  /// there is none or several. @throws InputError if the program has removed the folder
   [[nodiscard]] std::string shape_file() const {
     namespace fs = std::filesystem;
     std::error_code error;

@@ -62,14 +62,14 @@ struct SimulatorRun {
   std::optional<MeasuredShape> shape;    ///< shape of a solved run of a scene at rest
   std::optional<MarkerMotion> motion;    ///< motion of a solved run of a scene that moves
   /// RMS distance from the reference, divided by the length, or for a motion by
-  /// MotionReference::travel [-]; NaN without a shape, or if it was not compared.
+  /// MotionReference::rms_displacement [-]; NaN without a shape, or if it was not compared.
   double error = std::numeric_limits<double>::quiet_NaN();
 };
 
 /// Runs a program on a scene. {scene} is replaced by a file with the scene's document for `points`
 /// points, {points} by their number, and {shape} by the file that the program has to write;
-/// {shape}.csv and similar names are found too. Both files are in a new temporary folder, which is
-/// removed afterwards. The working directory is that of this process.
+/// {shape}.csv or a similar name is found too, if it is the only one. Both files are in a new
+/// temporary folder, which is removed afterwards. The working directory is that of this process.
 /// @param time_limit  [s], > 0
 /// @throws OutputError if that folder cannot be made or written
 [[nodiscard]] SimulatorRun run_foreign(const ForeignProgram& program, Scene scene, int points,
@@ -88,8 +88,8 @@ struct SimulatorRun {
 void require_held_ends(const Scene& scene, const Shape& laid, bool told);
 
 /// Measures the distances of a foreign shape from a reference, in the scene's frame, as `dlo check`
-/// measures a file that contains the whole rod. @throws InputError as require_held_ends(), or if
-/// the shape is less than half of the rod
+/// measures a file that contains the whole rod. Sets only rms_m, max_m, rms_over_length and tip_m.
+/// @throws InputError as require_held_ends(), or if the shape is less than half of the rod
 [[nodiscard]] Deviation foreign_deviation(const Scene& scene, const MeasuredShape& shape,
                                           const Reference& reference);
 

@@ -65,7 +65,8 @@ struct MovingReport {
 /// the variants that have no printed row.
 [[nodiscard]] std::vector<MovingRow> moving_rows();
 
-/// Runs moving_rows() with the default choices, and the printed rows with each choice varied.
+/// Runs moving_rows() with the default choices, and the printed rows with each choice varied, in
+/// Table 3 only the distance.
 [[nodiscard]] MovingReport moving_report();
 
 }  // namespace dlo::compare

@@ -68,7 +68,7 @@ CardScene card_scene(const BatteryScene& scene, const energy_model::Equilibrium&
 }
 
 /// Order of convergence from which, and error up to which, no cause is searched for a motion: it
-/// converges with about second order, or its error is at most 1e-3 of its travel.
+/// converges with about second order, or its error is at most 1e-3 (motion_error()).
 constexpr double converging_order = 1.5;
 constexpr double negligible_motion_error = 1e-3;
 

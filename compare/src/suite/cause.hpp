@@ -75,9 +75,9 @@ struct MotionReference {
 [[nodiscard]] MotionReference motion_reference(const BatteryScene& scene);
 
 /// Returns the RMS distance of all recorded points from the reference at their times and arc
-/// lengths, divided by the reference's travel. @throws InputError if a point is not on the rod, a
-/// time is out of range, fewer than half of the frames exist, or none is near the first or the last
-/// time
+/// lengths, divided by MotionReference::rms_displacement. @throws InputError if a point is not on
+/// the rod, a time is out of range, fewer than half of the frames exist, or none is near the first
+/// or the last time
 [[nodiscard]] double motion_error(const MotionReference& reference, const MarkerMotion& recorded);
 
 /// Identifies the cause of a motion's error, if one leaves only a small fraction of it: the rod
