@@ -48,7 +48,7 @@ enum class RegressionVerdict {
   changed,          ///< same name, but its scene or settings differ from the baseline's
   not_in_baseline,  ///< measured, but not contained in the baseline
   not_measured,     ///< in the baseline, but not measured
-  not_solved,       ///< a solver did not converge
+  not_solved,       ///< a solver did not converge, or a program gave no valid shape
 };
 
 /// Names of the verdicts in tables.
@@ -97,7 +97,8 @@ struct MeasuredCase {
 };
 
 /// Runs a foreign program on a scene, with the scene's number of points, and measures the distance
-/// of its shape from the energy model's. @throws ConvergenceError, InputError of the energy model
+/// of its shape from the energy model's. @throws ConvergenceError, InputError of the energy model;
+/// OutputError as run_foreign()
 [[nodiscard]] MeasuredCase measure_program(const Scene& scene, const ForeignProgram& program,
                                            const SolveOptions& options = {});
 
@@ -127,7 +128,8 @@ struct RegressRequest {
 /// Comparison of scenes with a baseline, as `dlo regress` prints it.
 struct Regression {
   std::vector<RegressionResult> results;  ///< sorted by name
-  /// Measured cases, to be written as a new baseline of these scenes.
+  /// Measured cases, to be written as a new baseline of these scenes; cases that were not solved
+  /// have no errors.
   std::vector<BaselineCase> cases;
 
   /// Whether every case was solved.

@@ -86,8 +86,8 @@ class Sweep {
   [[nodiscard]] Scene scene(std::int64_t row) const;
 
   /// Computes one row as a CSV line. status is "ok", or the reason why there are no results: a
-  /// scene that is refused or does not converge gives a row like any other. Numbers have 10
-  /// significant digits.
+  /// scene that is refused or does not converge gives a row like any other. Numbers of results have
+  /// 10 significant digits.
   [[nodiscard]] std::string row(std::int64_t row) const;
   /// Computes one row at full precision, one cell per column.
   [[nodiscard]] std::vector<SweepCell> cells(std::int64_t row) const;
