@@ -55,11 +55,12 @@ inline constexpr double rest_imbalance_limit = 0.02;
 /// thickness of a real rod causes errors of this size.
 inline constexpr double negligible_error = 1e-5;
 
-/// `check --motion`: largest fraction that a cause may leave: it explains half of the mean square
-/// distance. It is larger than check_left because no cause removes the noise of a recording.
+/// `check --motion`: largest fraction of the deviation that a cause may leave; the deviation is
+/// what the causes before it leave. It then explains half of the mean square distance. It is larger
+/// than check_left because no cause removes the noise of a recording.
 inline constexpr double recording_left = 0.7;
-/// `check --motion`: largest fraction with which another path of a gripper is reported. It is small
-/// because a path has three numbers per frame.
+/// `check --motion`: largest fraction that another path of a gripper may leave of the deviation
+/// that the causes before it leave. It is small because a path has three numbers per frame.
 inline constexpr double path_left = 0.35;
 /// `check --motion`: errors, divided by the length, that count as zero: those of the interpolation
 /// where accelerations jump.

@@ -26,11 +26,12 @@ struct ChainConvergence {
   int order = 0;        ///< p: d(N) / d(2N) tends to 2^p for short segments
 };
 
-/// Compares a chain with an equilibrium of the continuous rod, at equal arc lengths.
-/// A chain whose clamp holds the middle of a segment, or that has pins only, has p = 2. A hinge at
-/// a clamp makes half a segment too soft there, a welded segment makes half a one too stiff: p = 1.
-/// The error is one of discretisation if d(N) / d(2N) is 2^p within 30 %, or if d(N) is within the
-/// bound of make_plan for such a polygon.
+/// Compares a chain with an equilibrium of the continuous rod, at equal arc lengths. A chain whose
+/// clamp holds the middle of a segment, or that has pins only, has p = 2. A hinge at a clamp makes
+/// half a segment too soft there, a welded segment makes half a one too stiff: p = 1. The error is
+/// one of discretisation if d(N) / d(2N) is 2^p within 30 %, or, if clamps hold the middles of
+/// segments and the rod touches nothing, if d(N) is within the bound of make_plan for a polygon
+/// with the chain's points.
 /// @param largest  whether distances are the largest of a point, not the RMS along the rod
 [[nodiscard]] ChainConvergence chain_convergence(const Scene& scene, const CandidateChain& chain,
                                                  const energy_model::Equilibrium& rod,
