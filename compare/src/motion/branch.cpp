@@ -347,7 +347,7 @@ void Branch::advance_to_frame(Passage& passage) {
 
 /// Leaves the branch: finds an equilibrium beyond the branch's end, starting from its last shape.
 /// The equilibrium is searched `rejected` frames after the last shape or, if none is found there,
-/// at the frame.
+/// at the frame. If none is found there either, the lowest shape at the frame is searched.
 /// @return number of frames from the last shape to the equilibrium
 double Branch::leave_branch(double at, double rejected, Passage& passage) {
   if (passage.stayed_on_branch) {

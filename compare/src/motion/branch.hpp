@@ -79,7 +79,8 @@ struct BranchSample {
 /// the energy increases by the work within the bound for forces between those of both shapes (if
 /// has_energy_balance()), and the rod does not pass through an obstacle. If a step of a whole frame
 /// does not, smaller steps are made, down to `smallest_step` of a frame. Beyond the end of the
-/// branch the rod takes the shape that a search finds there, and is followed from it.
+/// branch the rod takes the next minimum downhill of its last shape, or else the shape that a
+/// search finds there, and is followed from it.
 class Branch {
  public:
   /// Size of a step, in frames, down to which the end of a branch is located.

@@ -44,9 +44,11 @@ struct DynamicTrack {
   /// Largest depth of the rod in a rigid obstacle in reach, over the length [-]; empty if there is
   /// no such obstacle.
   std::optional<double> deepest_contact;
-  int fewer_terms = 0;         ///< terms of a second run, which estimates the truncation error
-  double term_difference = 0;  ///< largest RMS distance between both runs, over the length [-]
-  TrackErrors quasi_static;    ///< errors of the track's shapes
+  int fewer_terms = 0;  ///< terms of a second run, which estimates the truncation error
+  /// Largest RMS distance between both runs, over the length; infinite if the second one ends
+  /// earlier [-].
+  double term_difference = 0;
+  TrackErrors quasi_static;          ///< errors of the track's shapes
   std::optional<TrackErrors> force;  ///< errors of the force model's shapes
   double force_lag = std::numeric_limits<double>::quiet_NaN();  ///< see ForceTrackSummary::lag [s]
   double force_error_without_lag = std::numeric_limits<double>::quiet_NaN();

@@ -48,7 +48,7 @@ class StartDeviation {
   /// @param modes  angles [rad], start_modes in each of two directions across the rod, then angular
   /// rates [rad/s]
   [[nodiscard]] MotionStart with(const Eigen::VectorXd& modes) const;
-  /// Returns upper estimates of the standard deviations of the modes caused by errors of the base's
+  /// Returns estimates of the standard deviations of the modes caused by errors of the base's
   /// points.
   [[nodiscard]] Eigen::VectorXd deviations() const;
 

@@ -65,10 +65,10 @@ struct TrackEvent {
     lost,     ///< the shape jumped, but no end of the branch was observed
   };
   Kind kind = Kind::contact;
-  std::size_t frame = 0;                                       ///< first frame after the event
-  std::optional<ContactChange> contact;                        ///< for a contact or a release
-  double released = std::numeric_limits<double>::quiet_NaN();  ///< energy released by a
-                                                               ///< snap-through [J]
+  std::size_t frame = 0;                 ///< first frame after the event
+  std::optional<ContactChange> contact;  ///< for a contact or a release
+  /// Energy released by a snap-through or a loss [J].
+  double released = std::numeric_limits<double>::quiet_NaN();
   double released_bound = 0;  ///< bound of the error of `released` [J]
   /// Smallest eigenvalue of the last shape on the branch, before the event [-].
   double smallest_eigenvalue = std::numeric_limits<double>::quiet_NaN();
@@ -99,8 +99,9 @@ struct Track {
   /// Median duration of a frame of the energy model in which something moves, without the first
   /// frame unless there is no other [s].
   double median_seconds = 0;
-  int lost_frames = 0;  ///< number of frames whose shape was found by a search, on another branch
-                        ///< or on the same
+  /// Number of frames in which the branch was not kept; their shape is on another branch or on the
+  /// same one.
+  int lost_frames = 0;
   int repeated_frames = 0;             ///< number of frames that needed smaller steps on the branch
   std::vector<std::string> neglected;  ///< not used, always empty
   ForceTrackSummary force;

@@ -48,8 +48,9 @@ struct MotionCheckRequest {
   /// Start time of the rod's motion [s]; empty: recorded_start_time() of the scene, else the first
   /// time of the recording.
   std::optional<double> from;
-  std::optional<double> frame_rate;  ///< frame rate of the model, which is interpolated between
-                                     ///< frames [Hz]
+  /// Frame rate of the model, which is interpolated between frames [Hz]; empty: four times that of
+  /// the recording, or that of the scene (for up to 2000 frames) if it is higher.
+  std::optional<double> frame_rate;
   std::optional<ShapeTolerance> tolerance;  ///< empty: default_tolerance()
   Explaining explaining = Explaining::yes;  ///< pass and fail do not depend on it
   SolveOptions solve;
@@ -120,8 +121,10 @@ struct MotionCheck {
 /// grippers. Points are compared at their own times and arc lengths; the rod is interpolated, not
 /// the recording. Both models are computed if the scene allows both; one is judged.
 /// @param recorded  in the order of time, then of arc length
-/// @throws InputError if the scene does not move, the recording does not belong to it, or has fewer
-/// than two times; ConvergenceError if the judged model does not reach the recording's end
+/// @throws InputError if the scene neither moves nor has a start, the recording does not belong to
+/// it or has fewer than two times, `from` is after its first time, the tolerance is one of
+/// deflection, or the judged model does not support the scene; ConvergenceError if the judged model
+/// does not reach the recording's end
 [[nodiscard]] MotionCheck check_motion(const Scene& scene, const MarkerMotion& recorded,
                                        const MotionCheckRequest& request = {},
                                        const Progress& progress = {});
