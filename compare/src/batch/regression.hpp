@@ -45,7 +45,7 @@ enum class RegressionVerdict {
   same,
   better,
   worse,
-  changed,          ///< same name, but its scene or settings differ from the baseline's
+  changed,  ///< its scene differs from the baseline's, or it replaces a case with other settings
   not_in_baseline,  ///< measured, but not contained in the baseline
   not_measured,     ///< in the baseline, but not measured
   not_solved,       ///< a solver did not converge, or a program gave no valid shape

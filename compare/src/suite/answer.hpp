@@ -22,7 +22,7 @@ struct OtherEquilibrium {
 };
 
 /// Bounds of the differences between the results of two methods. The bound of the points includes
-/// the error estimates of both.
+/// the error estimates of both, if they are known.
 struct AnswerBounds {
   double points_m = 0;              ///< largest distance of a point plus the error estimates [m]
   std::vector<double> forces_N;     ///< difference of the force of each gripper [N]
@@ -41,7 +41,7 @@ struct Answer {
   /// Other equilibria that a search has found, in the order of energy; none if the rod stretches,
   /// since no search is then made.
   std::vector<OtherEquilibrium> others;
-  bool is_lowest = true;  ///< whether no other stable equilibrium was found with less energy
+  bool is_lowest = true;  ///< whether no stable equilibrium with less energy was found
 };
 
 /// Number of points of an answer, at equal arc lengths.
