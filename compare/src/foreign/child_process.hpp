@@ -7,7 +7,7 @@ namespace dlo::compare {
 
 /// Result of a program that was run.
 struct ChildOutcome {
-  double seconds = 0;  ///< wall time from start to end, accurate to 1 % [s]
+  double seconds = 0;  ///< wall time from start to end, accurate to 1 % or 50 us [s]
   /// Clause that states why the program failed, without its own output; empty on success.
   std::string problem;
   bool too_long = false;  ///< whether the program was killed at the time limit

@@ -196,7 +196,8 @@ Work work_between(const SolvedInstant& before, const SolvedInstant& after, doubl
 }
 
 /// Whether the rod passed through an obstacle in a step: its points would be deep inside the
-/// obstacle on straight paths between both shapes.
+/// obstacle on straight paths between both shapes. False for half-spaces, and for obstacles that
+/// are too thin for the number of points.
 bool passes_through(const SolvedInstant& before, const SolvedInstant& after,
                     const std::vector<std::size_t>& obstacles) {
   return std::any_of(obstacles.begin(), obstacles.end(), [&](std::size_t i) {

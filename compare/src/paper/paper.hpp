@@ -30,12 +30,12 @@ struct ModulusAtTime {
 
 /// One orientation of Figs. 12 and 13, with one choice of the weight of the points.
 struct PaperCase {
-  Comparison rest;                   ///< comparison at rest, with the paper's c_c
-  std::vector<ModulusAtTime> creep;  ///< samples before the rod is at rest, in the order of time
+  Comparison rest;                             ///< comparison at rest, with the paper's c_c
+  std::vector<ModulusAtTime> creep;            ///< samples on the way to rest, at fixed times
   PaperWeight weight = PaperWeight::from_rod;  ///< weight of every point
 
   /// Returns the simulated time at which E*/E decreases below the paper's 1/3, interpolated between
-  /// the samples by a power law; NaN if it does not [s].
+  /// the samples by a power law; NaN if it does not do so between two samples [s].
   [[nodiscard]] double time_at_one_third() const;
 };
 

@@ -34,9 +34,9 @@ struct Simulator {
 [[nodiscard]] std::vector<Simulator> parse_simulators(const std::vector<std::string>& texts);
 
 /// Returns the result that a folder stores of an earlier run with the same version of dlo, program,
-/// time limit and scene; otherwise runs the simulator. Results that are solved or not supported are
-/// stored, each in a file of its own. A failed run is not stored, because its cause may be
-/// temporary: dlo may have stopped it.
+/// time limit, scene and number of points; otherwise runs the simulator. Results that are solved or
+/// not supported are stored, each in a file of its own. A failed run is not stored, because its
+/// cause may be temporary: dlo may have stopped it.
 /// @param folder   created if it does not exist; empty: nothing is stored
 /// @param version  version of dlo
 /// @throws OutputError if a result cannot be stored
