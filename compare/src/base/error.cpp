@@ -9,9 +9,9 @@
 namespace dlo::compare {
 namespace {
 
-/// Returns the message as one line. If the message quotes a very long value, its middle is replaced
-/// by the number of omitted characters; the file and the key at the beginning and the allowed
-/// values at the end remain.
+/// Returns the message as one line (display()). If the message is longer than 4096 bytes, for
+/// example because it quotes a very long value, its middle is replaced by the number of omitted
+/// bytes; the file and the key at the beginning and the allowed values at the end remain.
 std::string shortened(const std::string& message) {
   constexpr std::size_t longest = 4096;
   constexpr std::size_t begin = 512;

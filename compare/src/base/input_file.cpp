@@ -67,7 +67,8 @@ KnownFiles& known_files() {
   return files;
 }
 
-/// Records a regular file that is about to be read.
+/// Records a regular file that is about to be read, if InputsKept exists.
+/// @throws InputError if it is a declared output
 void record_input(const std::string& path) {
   KnownFiles& known = known_files();
   const std::lock_guard lock(known.guard);

@@ -53,7 +53,8 @@ class InputsKept {
 /// Whether an input is written if a command writes an output.
 using IsWritten = bool (*)(const std::string& input, const std::string& output);
 
-/// Declares a file that will be written, so that reading it fails before anything is computed.
+/// Declares a file that will be written, so that reading it fails before anything is computed. Has
+/// no effect unless InputsKept exists.
 /// @param name  beginning of the message, such as "--output shape.csv"
 void declare_output(const std::string& file, const std::string& name,
                     IsWritten is_written = same_file);
@@ -62,11 +63,12 @@ void declare_output(const std::string& file, const std::string& name,
 /// @throws InputError that begins with `name` if InputsKept exists and the file was read
 void require_not_read(const std::string& file, const std::string& name);
 
-/// Returns the content of a file. @throws InputError as InputFile
+/// Returns the content of a file. @throws InputError as InputFile and read_all()
 [[nodiscard]] std::string read_file(const std::string& path);
 
 /// Returns the content of a file of unknown origin: only a regular file is read, also through a
-/// link, so that reading never blocks. @param name  for messages @throws InputError as InputFile
+/// link, so that reading never blocks. InputsKept does not guard it. @param name  for messages
+/// @throws InputError if it is not a regular file, cannot be read or is larger than largest_file
 [[nodiscard]] std::string read_regular_file(const std::string& path, const std::string& name);
 
 /// Returns a text without the byte order mark with which some programs begin UTF-8.

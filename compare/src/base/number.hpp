@@ -36,9 +36,9 @@ template <typename Number>
   return number.value;
 }
 
-/// Returns a number for output as text: 0, never -0, if it is below 1e-9 of the magnitude of such
-/// quantities in the scene. That is the energy model's own error, so that the number is rounding
-/// only. JSON and CSV contain the unchanged number.
+/// Returns a number for output as text: 0, never -0, if its size is at most 1e-9 of the magnitude
+/// of such quantities in the scene. That is the energy model's own error, so that the number is
+/// rounding only. JSON and CSV contain the unchanged number.
 [[nodiscard]] double shown(double value, double magnitude);
 
 /// Whether a number that leading_number() finds out of range is too small for a double, not too
@@ -48,7 +48,9 @@ template <typename Number>
 /// Returns the error and the allowed range of a number that a double cannot represent.
 [[nodiscard]] std::string out_of_range_message(std::string_view number);
 
-/// Converts a whole field to a number, which may be infinite or NaN; empty if it is not a number.
+/// Converts a whole field to a number, which may be infinite or NaN and may begin with "+"; empty
+/// if it is not a number. A number that is too small for a double becomes 0, one that is too large
+/// becomes +infinity, whatever its sign.
 [[nodiscard]] std::optional<double> shape_number(std::string_view field);
 
 }  // namespace dlo::compare

@@ -169,7 +169,8 @@ struct OutputFile::State {
     if (replaces == Replaces::no_input) require_not_read(file, file);
   }
 
-  /// Copies owner and permissions of the replaced file, as far as this user may set them.
+  /// Copies the owner of the replaced file, if this user may set it, and its permissions.
+  /// @throws OutputError if the permissions cannot be set
   void copy_permissions() const {
     const std::optional<struct stat> existing = status_of(target.path);
     if (!existing) return;

@@ -28,15 +28,16 @@ struct OutputTarget {
     descriptor,
   };
   Kind kind = Kind::file;  ///< how it is written
-  std::string path;        ///< path with all links resolved
+  std::string path;        ///< path with links resolved, for Kind::descriptor not necessarily all
   int descriptor = -1;     ///< number of the descriptor, for Kind::descriptor
 };
 
 /// Resolves the links of an output's name. A file to which standard output or standard error is
 /// already redirected is that descriptor.
 /// @param file  as the user wrote it
-/// @throws InputError that names it and the reason: an empty name, a folder, a folder that does not
-/// exist or is not writable, a link to itself, a file that is not writable
+/// @throws InputError that names it and the reason, such as an empty name, a folder, a folder that
+/// does not exist or is not writable, a link to itself, a file that is not writable, a descriptor
+/// that is not open for writing
 [[nodiscard]] OutputTarget output_target(const std::string& file);
 
 /// Whether two names refer to the same file, by links of either kind or by spelling. A file that

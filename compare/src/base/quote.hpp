@@ -10,8 +10,8 @@
 
 namespace dlo::compare {
 
-/// Returns a text of characters that XML 1.0 allows: control characters become blanks, and invalid
-/// UTF-8, U+FFFE and U+FFFF become U+FFFD.
+/// Returns a text of characters that XML 1.0 allows: U+0000 to U+001F, also tabs and line breaks,
+/// and U+007F become blanks, and invalid UTF-8, U+FFFE and U+FFFF become U+FFFD.
 [[nodiscard]] std::string xml_text(const std::string& text);
 
 /// Returns xml_text() escaped for elements and attributes of HTML and XML.
@@ -32,10 +32,11 @@ namespace dlo::compare {
 /// Returns a word for a shell, quoted if necessary; as display().
 [[nodiscard]] std::string shell_word(const std::string& word);
 
-/// Returns a short, printable part of a file for a message.
+/// Returns the first 40 bytes of a part of a file for a message, followed by "..." if there are
+/// more, with "?" for each byte that is not printable ASCII.
 [[nodiscard]] std::string printable_piece(std::string_view piece);
 
-/// Returns a short, printable part of a file for a message, in quotes.
+/// Returns printable_piece() in quotes.
 [[nodiscard]] std::string quoted_piece(std::string_view piece);
 
 /// A number as append() and formatted() print it: without a minus sign if all its printed digits

@@ -8,7 +8,8 @@
 namespace dlo::compare {
 
 /// Encloses the start of a child and the construction of its TemporaryGroup, so that end_groups()
-/// misses no child: it waits for these starts, and none begins after it. Holds all signals.
+/// misses no child: it waits for these starts, up to about a second, and none begins after it. All
+/// signals of the thread are blocked meanwhile.
 class GroupStart {
  public:
   GroupStart();
@@ -25,7 +26,7 @@ class GroupStart {
 class TemporaryGroup {
  public:
   /// @param group  number of the group, > 1
-  /// @throws std::runtime_error if there are too many at a time
+  /// @throws std::runtime_error if there are too many at a time; the group is killed before
   explicit TemporaryGroup(int group);
   ~TemporaryGroup();
   TemporaryGroup(const TemporaryGroup&) = delete;

@@ -37,7 +37,9 @@ namespace dlo::compare {
 [[nodiscard]] std::string replace_placeholders(
     std::string_view text, const std::vector<std::pair<std::string_view, std::string>>& values);
 
-/// Wraps a text into lines of at most `width` characters, all but the first indented.
+/// Wraps a text into lines of at most `width` bytes, all but the first indented by `indent` blanks;
+/// a longer word is not divided. The first line is assumed to follow `indent` bytes of other text.
+/// Blanks and line breaks between words become one blank. The last line has no line break.
 [[nodiscard]] std::string wrap(const std::string& text, std::size_t indent, std::size_t width = 80);
 
 /// Largest nesting depth of TOML and JSON. Parsers make a nested table of every part of a dotted

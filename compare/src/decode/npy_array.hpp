@@ -29,6 +29,7 @@ class NpyArray {
   /// Whether the numbers have a supported type.
   [[nodiscard]] bool has_numbers() const { return format_.has_value(); }
   /// Checks the numbers. @throws InputError unless has_numbers() and the bytes contain all of them
+  /// and nothing else
   void require_numbers() const;
   /// Returns one number, after require_numbers(). @param index  one per dimension, below its size
   [[nodiscard]] double at(std::initializer_list<std::size_t> index) const;

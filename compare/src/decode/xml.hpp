@@ -14,7 +14,8 @@ namespace dlo::compare {
 class XmlFile {
  public:
   /// @param text  UTF-8, also with a byte order mark;  @param file  name of the file, for messages
-  /// @throws InputError that names file and line if it is not well-formed, or has a document type
+  /// @throws InputError that names file and line if it is not well-formed, has a document type, or
+  /// is nested too deep
   XmlFile(std::string_view text, std::string file);
 
   /// Returns the root element.
@@ -35,7 +36,8 @@ class XmlFile {
   pugi::xml_document document_;
 };
 
-/// Collects the refusals of a file, so that one message names all of them.
+/// Collects the refusals of a file, so that one message names the first ten and the number of
+/// others.
 class XmlRefusals {
  public:
   /// Calls a reader and keeps the message of an InputError that it throws.
@@ -47,7 +49,7 @@ class XmlRefusals {
       add(error.what());
     }
   }
-  /// Throws all messages on one line.
+  /// Throws the first ten messages and the number of others on one line.
   /// @throws InputError if there is any
   void throw_if_any() const;
 

@@ -9,8 +9,8 @@
 
 namespace dlo::compare {
 
-/// Returns the number of threads of a task arena: at most `threads`, or as many as the machine has
-/// for 0. oneTBB accepts larger numbers too, but prints a warning to standard error.
+/// Returns the number of threads of a task arena: at most `threads`, or all that are available for
+/// 0. oneTBB accepts larger numbers too, but prints a warning to standard error.
 inline int arena_threads(int threads) {
   const int available = tbb::this_task_arena::max_concurrency();
   return threads > 0 ? std::min(threads, available) : available;

@@ -97,7 +97,8 @@ std::string value_text(const Json& value, const KeyName& key, double scale) {
   return formatted("{:.{}g}", value_shown, exact ? 9 : 4);
 }
 
-/// Whether a value has a text of one line: it contains no object, and no long list.
+/// Whether a value has a text of one line: it is not null and contains no object, no empty list,
+/// and not more than nine values.
 bool fits_on_one_line(const Json& value) {
   constexpr std::size_t most_numbers = 9;
   if (!value.is_array()) return !value.is_object() && !value.is_null();
@@ -109,7 +110,8 @@ bool is_list_of_objects(const Json& value) {
   return value.is_array() && !value.empty() && value.front().is_object();
 }
 
-/// Returns all columns of a list of objects, also those of objects in them.
+/// Returns the columns of a list of objects: all values that fit on one line, also those of objects
+/// directly in them.
 std::string all_columns(const Json& rows) {
   std::string columns;
   std::set<std::string> known;

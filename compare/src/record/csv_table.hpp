@@ -49,7 +49,7 @@ struct Document {
   /// {{"dynamic/frames", "time_s,rms_m"}}; an empty text omits the list. Lists within a list's
   /// objects are shown only if they have columns here.
   std::map<std::string, std::string> columns = {};
-  Magnitudes large = {};  ///< magnitudes below which numbers of the text are rounding
+  Magnitudes large = {};  ///< numbers of the text below 1e-9 of these are rounding
   /// Path of the list that is the CSV table; it has columns. Empty: the document is the only row.
   std::string table = {};
   std::string head = {};  ///< text for people before the values
@@ -57,7 +57,8 @@ struct Document {
 
   /// Returns the head, a line `name  value unit` for each value, then a table for each list of
   /// objects. Name and unit are those of the key, such as `rms_m`. Numbers have four significant
-  /// digits, shares of the length are percentages; points and long lists of numbers are omitted.
+  /// digits, unless they are whole or just below 1; shares of the length are percentages. The key
+  /// `schema`, values that are null, points and long lists of numbers are omitted.
   [[nodiscard]] std::string text() const;
   [[nodiscard]] std::string csv() const;
 };

@@ -109,11 +109,11 @@ template <typename T>
 /// Magnitudes of a scene's results: values far below them are rounding (shown()).
 struct Magnitudes {
   double length = 0;  ///< l [m]
-  double force = 0;   ///< sum of the weight, the loads and EI/l^2 [N]
+  double force = 0;   ///< sum of the weight, the loads and the smaller EI/l^2 [N]
   double torque = 0;  ///< `force` times l [N m]
   double energy = 0;  ///< `force` times l [J]
 
-  /// Returns the magnitude of quantities with a unit.
+  /// Returns the magnitude of quantities with a unit: m, N, Nm or J; 0 for other units.
   [[nodiscard]] double of(std::string_view unit) const;
 };
 

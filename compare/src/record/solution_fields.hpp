@@ -15,11 +15,11 @@ struct SolvedShape {
   const Solution& solution;
 };
 
-/// Returns the fields of `solve` about the solver and the energies.
+/// Returns the fields of a result of `solve`, without shape_numbers().
 [[nodiscard]] std::span<const Field<SolvedShape>> solution_fields();
 
 /// Returns the fields of an equilibrium shape that `solve`, each row of `sweep` and each frame of
-/// `track` have.
+/// `track` have, for scenes whose clamps prescribe twist.
 [[nodiscard]] std::span<const Field<SolvedShape>> shape_numbers();
 
 /// Returns the fields of the energies of a shape [J].
@@ -28,7 +28,7 @@ struct SolvedShape {
 /// Returns the fields of a shape's deviation from another one.
 [[nodiscard]] std::span<const Field<Deviation>> deviation_fields();
 
-/// Returns the name of a status in documents.
+/// Returns the name of a status in documents; "failed" for all that have no shape.
 [[nodiscard]] const char* status_name(energy_model::SolveStatus status);
 
 /// Whether a solution is stable, as far as this is known. If a shape is not verified, its smallest
