@@ -15,7 +15,8 @@ constexpr const char* zero_width_space = "\xe2\x80\x8b";
 
 constexpr int title_line_pixels = 22;
 
-/// Divides a title into lines that fit above a figure.
+/// Divides a title between words into lines that fit above a figure: of at most 50 bytes, unless a
+/// word is longer.
 std::vector<std::string> title_lines(const std::string& title) {
   constexpr std::size_t most = 50;
   std::vector<std::string> lines = {""};

@@ -33,7 +33,9 @@ void widen(PlotRange& range, const std::vector<double>& values) {
   }
 }
 
-/// Sets missing limits of an axis to the range of the drawn values plus a margin.
+/// Sets missing limits of an axis to the range of the drawn values plus a margin; without values to
+/// that of 0 to 1, or of 1 to 10 on a logarithmic axis. An upper limit that is not above the lower
+/// one is moved to 1 above it.
 void set_limits(PlotAxis& axis, const PlotRange& drawn) {
   PlotRange range = drawn[0] <= drawn[1] ? drawn
                     : axis.logarithmic   ? PlotRange{1, 10}

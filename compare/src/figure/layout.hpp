@@ -56,7 +56,7 @@ struct Cells {
   std::vector<double> x, y;    ///< edges of the rectangles, increasing
   std::vector<double> values;  ///< row by row from the lowest; NaN: not drawn
 
-  /// Returns the smallest and the largest value.
+  /// Returns the smallest and the largest finite value; infinity and -infinity if there is none.
   [[nodiscard]] std::pair<double, double> range() const;
 };
 

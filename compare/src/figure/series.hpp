@@ -25,7 +25,7 @@ struct Series {
   CurveStyle look;
   Eigen::Matrix3Xd points;  ///< [m]; a column of NaN interrupts the line
   std::vector<double> arc_length;
-  std::vector<double> curvature;  ///< empty if not shown; NaN at the ends of polygons
+  std::vector<double> curvature;  ///< empty if not shown; NaN where it is not defined
   /// Index of the only view that shows the series, without extending its limits; -1: all views.
   int view = -1;
 };
@@ -55,15 +55,17 @@ struct Drawing {
 [[nodiscard]] bool stays_in_plane(const Scene& scene, const Eigen::Matrix3Xd& points);
 
 /// Returns one view of the plane that contains the points if it is a coordinate plane. Otherwise it
-/// returns two projections with a common axis, the first with gravity vertical.
+/// returns two projections with a common axis, the first with the vertical axis that is nearest to
+/// gravity (y without gravity).
 /// @param points  points of the rod [m]
 [[nodiscard]] std::vector<View> views_of(const Scene& scene, const Eigen::Matrix3Xd& points);
 
 /// Returns a rod as a line, with its curvature. If the rod is planar, curvature to the left is
-/// positive.
+/// positive and curvature to the right negative; otherwise it is the magnitude.
 [[nodiscard]] Series rod_series(const Reference& rod, const Scene& scene, const View& view);
 
-/// Returns a polygon with the curvature of its joints.
+/// Returns a polygon with the curvature of its joints, with the sign of rod_series() and NaN at
+/// both ends.
 [[nodiscard]] Series polygon_series(const Shape& shape, const Scene& scene, const View& view);
 
 /// Returns the straight rod of a scene with a single clamp; std::nullopt for other scenes.

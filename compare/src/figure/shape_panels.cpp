@@ -28,7 +28,7 @@ std::array<double, 2> range_of(const std::vector<Series>& all, int axis) {
 
 double extent(const std::array<double, 2>& range) { return range[1] - range[0]; }
 
-/// Extends a range about its middle to the size `to`.
+/// Extends a range about its middle to the size `to`, unless it is larger already.
 std::array<double, 2> widened(const std::array<double, 2>& range, double to) {
   const double middle = (range[0] + range[1]) / 2;
   const double half = std::max(extent(range), to) / 2;

@@ -114,7 +114,8 @@ std::string natural_curvature_text(const compare::MaterialFit& fit) {
   return "[" + out + "]";
 }
 
-/// Adds the fitted quantities of the rod other than its material, and the camera's tilt.
+/// Adds the fitted torsional stiffness, natural curvature and camera's tilt, as far as there are
+/// any.
 void add_shape_lines(std::string& out, const compare::MaterialFit& fit) {
   if (fit.torsional_stiffness && fit.torsional_stiffness->value) {
     append(out, "torsional_stiffness = {:.8e}  # N m^2, {}\n", *fit.torsional_stiffness->value,

@@ -17,7 +17,7 @@ struct Key {
   [[nodiscard]] std::string text() const { return name + unit; }
 };
 
-/// Returns the key of the stiffness: of E, or of EI if the rod is given by EI and its mass.
+/// Returns the key of the stiffness: of E, or of EI if the rod is given by EI.
 [[nodiscard]] Key stiffness_key(const compare::Scene& scene);
 [[nodiscard]] Key mass_parameter_key(const compare::Scene& scene);
 [[nodiscard]] Key torsion_key();
@@ -30,7 +30,8 @@ struct ShownValue {
   compare::FittedValue value;
 };
 
-/// Returns the fitted numbers of the first scene in order; the first one is E, or EI.
+/// Returns the fitted numbers, with the names and values of the first scene: E or EI, then those of
+/// density, GJ and GJ / EI that were fitted.
 [[nodiscard]] std::vector<ShownValue> fitted_values(const compare::Calibration& report);
 
 /// Returns "95 %: 1.2 to 1.3"; an open end is "...".
@@ -39,13 +40,14 @@ struct ShownValue {
 /// Returns the options of an alternative fit, as they are given on the command line.
 [[nodiscard]] std::string option_words(const compare::FitAlternative& alternative);
 
-/// Returns the joints of the chains that come nearest to a rod.
+/// Returns an object for each of the chains that come nearest to a rod, with its segments and
+/// joints.
 [[nodiscard]] compare::Json chains_json(const std::vector<compare::ChainSprings>& chains);
 
 /// Returns the results for --calibrated. If the rod is given by E, it is also a materials file with
 /// the material "calibrated".
-/// @throws compare::InputError if E is not identified and no shapes were predicted, or the rod is
-/// given by EI and a density or the reverse
+/// @throws compare::InputError if E or a fitted density is not identified and no shapes were
+/// predicted, or the rod is given by EI and a density or the reverse
 [[nodiscard]] std::string material_toml(const compare::Calibration& report);
 
 /// A value, and the comment that states its interval.

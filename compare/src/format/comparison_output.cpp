@@ -17,8 +17,8 @@
 namespace dlo::cli {
 namespace {
 
-/// Returns the parts of the error budget. A share is the projection of a part on the total, so that
-/// the shares add up to 1; a part orthogonal to the total has a length, but no share.
+/// Returns the shown parts of the error budget, then the total. A share is the projection of a part
+/// on the total, so that the shares add up to 1; that of a part orthogonal to the total is 0.
 Json budget_rows(const compare::Comparison& comparison) {
   Json rows = json_list(compare::shown_parts(comparison), [](const auto& row) -> Json {
     return {

@@ -44,7 +44,7 @@ void count_from_1(Json& contacts);
 [[nodiscard]] Json solution_json(const compare::Solution& solution, const compare::Scene& scene,
                                  const compare::Plan& plan);
 
-/// Returns the points in the format that `dlo check` reads.
+/// Returns the points, with d1 if the solution has a frame, in the format that `dlo check` reads.
 [[nodiscard]] std::string solution_csv(const compare::Solution& solution);
 
 /// Returns one of several equilibria, with its forces and contacts.
@@ -57,7 +57,8 @@ void count_from_1(Json& contacts);
 [[nodiscard]] std::string equilibria_text(const compare::AllSolutions& all,
                                           const compare::Scene& scene);
 
-/// Returns the first of several equilibria in full, then the differences of the others.
+/// Returns the document of the first of several equilibria, with a list of all of them: stability,
+/// energy and points of each.
 [[nodiscard]] Json equilibria_json(const compare::AllSolutions& all, const compare::Scene& scene,
                                    const compare::Plan& plan);
 
@@ -73,10 +74,11 @@ void count_from_1(Json& contacts);
 /// Returns the document of several comparisons.
 [[nodiscard]] Json comparisons_json(const std::vector<compare::Comparison>& comparisons);
 
-/// Returns one line per comparison.
+/// Returns a header, then one line per comparison.
 [[nodiscard]] std::string comparisons_csv(const std::vector<compare::Comparison>& comparisons);
 
-/// Adds the RMS distance of a shape from another, the largest distance and its position.
+/// Adds the RMS distance of a shape from another, the largest distance and its position, without a
+/// line break at the end.
 void add_largest_and_rms(std::string& out, const compare::Deviation& d);
 
 /// Adds the lines about E*/E.
@@ -94,7 +96,7 @@ struct CheckPage {
 
 [[nodiscard]] compare::Document shape_check_document(const CheckPage& page);
 
-/// Returns a text as one cell of a Markdown table, with all markup escaped.
+/// Returns a text as one cell of a Markdown table, with the characters \`*_[]<>|#& escaped.
 [[nodiscard]] std::string markdown(const std::string& text);
 
 /// Returns a summary in Markdown, such as for a job of continuous integration.

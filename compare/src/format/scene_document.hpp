@@ -9,8 +9,8 @@ namespace dlo::compare {
 
 /// Returns a scene as it was read, in SI units, with all derived quantities, for programs that know
 /// neither TOML nor materials (schema dlo/scene/1, described in doc/protocol.md). Quantities that
-/// the scene does not have are null. `force_model` contains the polygon of discretise(), or in
-/// `refused` the reason why there is none.
+/// the scene does not have are null; `drag` is missing without drag. `force_model` contains the
+/// polygon of discretise(), or in `refused` the reason why there is none.
 [[nodiscard]] nlohmann::ordered_json scene_document(const Scene& scene);
 
 /// Returns the part of the document about the rod's layers; null without layers.

@@ -23,7 +23,8 @@ namespace dlo::compare {
 [[nodiscard]] Drawing solution_drawing(const Scene& scene, const std::vector<Solution>& solutions);
 
 /// Draws solutions of one scene: shapes at equal aspect with grippers, obstacles and contact, and
-/// next to them their curvature. Unstable solutions are dashed.
+/// next to them their curvature. Solutions that are unstable, or not known to be stable, are
+/// dashed.
 /// @param solutions  one or more, of one model
 [[nodiscard]] Picture solution_picture(const Scene& scene, const std::vector<Solution>& solutions);
 
@@ -74,7 +75,7 @@ void add_levels(Panel& panel, double rms_m, std::optional<double> allowed_m, dou
 [[nodiscard]] Figure budget_figure(const Comparison& comparison);
 
 /// Draws a fitted material: each shape's points on the fitted rod, and the profile likelihood of
-/// the stiffness with its interval.
+/// the stiffness with its interval, if the fit has one.
 /// @param scenes  one for each of the fit's shapes
 /// @param fit     computed with MaterialFitOptions::profile_points
 [[nodiscard]] Picture fit_picture(const std::vector<Scene>& scenes, const MaterialFit& fit);
@@ -129,7 +130,7 @@ struct TrackShapes {
 /// Figures of a scene's motion.
 struct TrackFigures {
   Figure strip;  ///< nine shapes at about equal intervals of time, or all shapes if there are fewer
-  /// Forces and torques of up to three grippers against time, with contacts and snaps.
+  /// Magnitudes of force and torque of up to three grippers against time, with the track's events.
   Figure forces;
 };
 
