@@ -104,7 +104,7 @@ struct MjcfElement {
 /// Returns an element by its name; null if a rod's scene has no such element.
 [[nodiscard]] const MjcfElement* mjcf_element(std::string_view name);
 
-/// Whether a part of the file other than the bodies has no effect on an equilibrium.
+/// Whether elements of this name, in the file or in a body, have no effect on an equilibrium.
 [[nodiscard]] bool mjcf_without_effect(std::string_view name);
 
 }  // namespace dlo::compare

@@ -17,7 +17,7 @@ struct MjcfJoint {
   Eigen::Vector3d place = Eigen::Vector3d::Zero();  ///< position in the body [m]
   Eigen::Vector3d axis = Eigen::Vector3d::UnitZ();  ///< axis of a hinge in the body, unit vector
   double stiffness = 0;                             ///< [N m/rad]
-  bool is_limited = false;                          ///< whether it has a range
+  bool is_limited = false;                          ///< whether it has a range that is in force
   pugi::xml_node node;                              ///< XML element, for messages
 
   /// Whether two segments can rotate relative to each other at the joint.

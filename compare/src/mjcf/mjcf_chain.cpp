@@ -73,8 +73,8 @@ class ChainFinder {
     return jointed ? joints.front().place : Vector3d::Zero();
   }
 
-  /// Returns the moving bodies from one end to the other, preceded by the body that holds the first
-  /// one if that body is a segment itself.
+  /// Returns the moving bodies from one end to the other, without those that only name a position,
+  /// preceded by the body that holds the first one if that body is a segment itself.
   [[nodiscard]] std::vector<std::size_t> bodies_along() {
     std::vector<std::size_t> along;
     for (std::size_t i = 1; i < world_.bodies.size(); ++i) {

@@ -32,15 +32,18 @@ struct MjcfSection {
 /// A model's cable as a rod.
 struct MjcfChain {
   std::vector<MjcfSegment> segments;
-  double length = 0;               ///< [m]
-  double mass = 0;                 ///< [kg]
-  double bending_stiffness = 0;    ///< EI [N m^2], the mean of the joints
-  double torsional_stiffness = 0;  ///< GJ [N m^2], the mean of the joints; 0: none, of hinges
+  double length = 0;             ///< [m]
+  double mass = 0;               ///< [kg]
+  double bending_stiffness = 0;  ///< EI [N m^2], the mean of the joints
+  /// GJ [N m^2], the mean of the joints; 0 if a joint transmits no torque or does not allow twist.
+  double torsional_stiffness = 0;
   /// Empty if all segments have the same mass and all joints the same springs; else covers the
   /// whole rod.
   std::vector<MjcfSection> sections;
-  double diameter = 0;  ///< diameter of its geoms [m]; 0: they are not round
-  double spring = 0;    ///< stiffness of a joint between two segments [N m/rad]
+  /// Largest diameter of the geoms before the first one that is neither round nor a sphere [m]; 0:
+  /// there is none.
+  double diameter = 0;
+  double spring = 0;  ///< mean stiffness of the joints between two segments [N m/rad]
   /// Axis of the hinges if they allow bending in one plane only, in the world; zero: bending about
   /// every axis is possible.
   Eigen::Vector3d hinge = Eigen::Vector3d::Zero();
@@ -61,7 +64,8 @@ struct MjcfGripper {
   double at = 0;                                       ///< arc length [m]
   Eigen::Vector3d position = Eigen::Vector3d::Zero();  ///< [m]
   std::optional<Eigen::Vector3d> direction;            ///< unit vector of a clamp
-  /// d1 of a clamp; empty for all clamps if none is rotated from its reference pose.
+  /// d1 of a clamp; empty for all clamps if none is rotated from its reference pose, and for a
+  /// clamp that stands for the spring of the first joint.
   std::optional<Eigen::Vector3d> d1;
   std::string words;  ///< "the first body is fixed"
 };
@@ -76,8 +80,9 @@ struct MjcfGripper {
                                                           std::vector<std::string>& notes);
 
 /// Returns the geoms of fixed bodies that collide with a cable, as tables [[obstacle]] of a scene.
-/// @param notes  receives the neglected ones
-/// @throws InputError that names file, line and element of a geom that no obstacle can represent
+/// A geom that no obstacle can represent is added to the refusals of `attributes`.
+/// @param notes  receives the number of neglected ones
+/// @throws InputError that names an element of <contact> other than exclude
 [[nodiscard]] std::string mjcf_obstacles(const MjcfAttributes& attributes, const MjcfWorld& world,
                                          const MjcfChain& chain,
                                          const std::vector<MjcfGripper>& holds,

@@ -30,14 +30,15 @@ struct MjcfGeom {
   }
 };
 
-/// Returns the volume [m^3]; that of a capsule is a cylinder and a sphere, its two caps.
+/// Returns the volume [m^3]; that of a capsule is a cylinder and a sphere, its two caps; 0 for
+/// planes and other geoms.
 [[nodiscard]] double mjcf_volume(const MjcfGeom& geom);
 
 /// Reads a geom. @param at  pose of the surrounding frames, in the body
 [[nodiscard]] MjcfGeom read_mjcf_geom(const MjcfNode& node, const MjcfPose& at);
 
-/// Reads a composite's geom, which extends over the segment, along x from 0 to `length`. Default
-/// classes do not apply to it.
+/// Reads a composite's geom, which extends over the segment, along x from 0 to `length`. Of the
+/// default classes only the main one applies, without its pose.
 [[nodiscard]] MjcfGeom read_composite_geom(const MjcfNode& node, double length);
 
 }  // namespace dlo::compare

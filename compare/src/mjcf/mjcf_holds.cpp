@@ -120,7 +120,8 @@ class GripperFinder {
     constraint.fail(attribute, name.empty() ? "missing (allowed: a site's name)" : "no such site");
   }
 
-  /// Returns the segment that a constraint holds; the other body must not move.
+  /// Returns the segment that a constraint holds, which is that of `first` afterwards: `first` and
+  /// `second` are exchanged if necessary. The other body must not belong to the cable.
   [[nodiscard]] std::size_t held_segment(const MjcfNode& constraint, AttachmentPoint& first,
                                          AttachmentPoint& second) const {
     const auto a = chain_.segment_of(first.body);

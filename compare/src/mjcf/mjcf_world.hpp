@@ -23,9 +23,9 @@ struct MjcfWorld {
   std::vector<std::string> notes;  ///< notes on ignored parts of the model
 };
 
-/// Reads the bodies of a model.
-/// @throws InputError that names file, line, element and attribute that a rod's scene cannot
-/// represent
+/// Reads the bodies of a model. Elements and attributes that a rod's scene cannot represent are
+/// added to the refusals of `attributes`.
+/// @throws InputError that names the file if it has no <worldbody>
 [[nodiscard]] MjcfWorld read_mjcf_world(const MjcfAttributes& attributes);
 
 /// Adds the bodies, joints and sites of a <composite type="cable"> to a world.

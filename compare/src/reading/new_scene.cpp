@@ -17,7 +17,7 @@
 namespace dlo::compare {
 namespace {
 
-/// Returns numbers and vectors as they are, everything else as a TOML string.
+/// Returns a vector as it is, a number as TOML spells it, everything else as a TOML string.
 std::string toml_value(const std::string& value) {
   if (value.starts_with('[')) return value;
   try {

@@ -28,7 +28,8 @@ namespace dlo::compare {
 void read_rod(StrictTable& rod, std::vector<StrictTable>& sections,
               const std::vector<Material>& known_materials, Scene& scene);
 
-/// Reads natural curvature and twist of a table [rod], or its helix.
+/// Reads the natural curvature of a table [rod], or the curvature and twist of its helix; the key
+/// natural_twist is read by read_members().
 /// @throws InputError that names file, line, key, value and what is allowed
 void read_natural_strains(StrictTable& rod, Scene& scene);
 
@@ -37,7 +38,7 @@ void read_natural_strains(StrictTable& rod, Scene& scene);
 /// @throws InputError that names file, line, key, value and what is allowed
 void read_rest_shape(StrictTable& rod, const std::vector<StrictTable>& sections, Scene& scene);
 
-/// Reads the material of a table [rod], by its name or as a table.
+/// Reads the material of a table [rod] or of a layer, by its name or as a table.
 /// @throws InputError that names file, line, key, value and what is allowed
 [[nodiscard]] Material read_material(StrictTable& rod,
                                      const std::vector<Material>& known_materials);
@@ -49,7 +50,7 @@ void read_rest_shape(StrictTable& rod, const std::vector<StrictTable>& sections,
 
 /// Reads a table [[gripper]] of a scene whose rod and obstacles have been read.
 /// @throws InputError that names file, line, key, value and what is allowed; also if the gripper is
-/// behind or within an obstacle
+/// behind or within an obstacle, or so near that the rod's surface would be
 [[nodiscard]] Gripper read_gripper(StrictTable& table, const Scene& scene);
 
 /// Checks that GJ is given or assumed if two clamps hold the rod's frame.

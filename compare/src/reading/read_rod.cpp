@@ -42,7 +42,8 @@ std::optional<BendingStiffnesses> read_bending(StrictTable& rod, double length) 
       std::nullopt};
 }
 
-/// Reads what a circle or a ring has in addition to its diameter.
+/// Reads what a circle or a ring has in addition to its diameter, which is required; nothing for a
+/// rectangle.
 void read_cross_section(StrictTable& rod, Scene& scene) {
   if (rod.has("width")) return;
   (void)rod.number("diameter");  // required
@@ -86,7 +87,8 @@ std::string section_text(const Scene& scene) {
   return fmt::format("diameter = {:g} m", scene.diameter);
 }
 
-/// Checks that stiffnesses derived from numbers in range are positive and finite.
+/// Checks that stiffnesses derived from numbers in range are positive and finite, and that Gamma is
+/// at most largest_gamma.
 void require_finite_rod(const Scene& scene, const StrictTable& rod) {
   const auto usable = [](double stiffness) { return stiffness > 0 && std::isfinite(stiffness); };
   if (!usable(scene.bending_stiffness()) || !usable(scene.axial_stiffness())) {

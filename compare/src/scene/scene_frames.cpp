@@ -15,8 +15,9 @@
 namespace dlo::compare {
 namespace {
 
-/// Returns the unit normal of the plane that contains grips, forces and obstacles in reach, if
-/// there is one.
+/// Returns the unit normal of a plane that contains grips and forces, is perpendicular to couples
+/// and is a plane of symmetry of the obstacles in reach; std::nullopt if there is none. Loads that
+/// follow the rod are ignored.
 std::optional<Eigen::Vector3d> scene_normal(const Scene& scene) {
   std::vector<Eigen::Vector3d> vectors = {scene.gravity};
   for (const Gripper& gripper : scene.grippers) {

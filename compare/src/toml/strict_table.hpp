@@ -163,8 +163,8 @@ class StrictTable {
 inline constexpr std::size_t largest_toml = std::size_t{1} << 22;
 
 /// Parses a file's text.
-/// @throws InputError with file, line and the parser's message, or if the text is larger than
-/// largest_toml or nested deeper than deepest_nesting
+/// @throws InputError with file, line and the parser's message, or as require_toml_limits(), or if
+/// the text is larger than largest_toml
 [[nodiscard]] toml::table parse_toml(const std::string& text, const std::string& file);
 
 }  // namespace dlo::compare

@@ -21,7 +21,8 @@ struct MarkerTrajectory {
   Trajectory trajectory;
 };
 
-/// Returns the trajectories of all markers, by arc length.
+/// Returns the trajectories of both markers, by arc length.
+/// @throws InputError unless there are exactly two
 std::vector<MarkerTrajectory> marker_trajectories(const MarkerMotion& markers,
                                                   std::optional<double> cutoff) {
   std::map<double, std::vector<Pose>> by_arc_length;

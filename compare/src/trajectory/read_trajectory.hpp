@@ -123,7 +123,8 @@ class NumberColumns {
 };
 
 /// Reads a recording from CSV: a header with time, s, x, y, z in any order, then a row for each
-/// marker that was observed at a time, in s and m. Rows may be in any order.
+/// marker that was observed at a time, in s and m. Rows may be in any order; the result is sorted
+/// by time, then by arc length.
 /// @throws InputError that names the file, the line, and what is allowed
 [[nodiscard]] MarkerMotion parse_markers(std::string_view text, const std::string& file);
 

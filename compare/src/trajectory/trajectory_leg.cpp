@@ -59,7 +59,8 @@ double turning_rate(const GreatCircle& before, const GreatCircle& after, double 
   return rate * speed_share(rate, s_before, s_after);
 }
 
-/// Returns the rate of change at pose b of a vector that each pose has.
+/// Returns the rate of change at pose b of a vector that each pose has, limited to three times the
+/// slower mean rate before and after b; 0 if the angle between these two rates is not acute.
 template <class Value>
 Eigen::Vector3d velocity_between(const Pose& a, const Pose& b, const Pose& c, const Value& value) {
   const double h_before = b.time - a.time;
