@@ -53,7 +53,8 @@ extern "C" void end_command_at_time_limit(int /*number*/) {
 }
 
 /// Enforces --time-limit for a whole command: solvers of this thread stop when the time is over. If
-/// the computation does not stop soon after that, the process ends with a message.
+/// the computation does not stop soon after that, the process ends with a message, except during a
+/// library call (RedirectedOutput).
 class CommandTimeLimit {
  public:
   CommandTimeLimit(const std::string& command, double seconds)

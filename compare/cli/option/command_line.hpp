@@ -112,7 +112,8 @@ class Command {
   void prepares(const std::function<void()>& prepare) {
     app_.preparse_callback([prepare](std::size_t /*words*/) { prepare(); });
   }
-  /// Sets the function that the command runs, after all options have been added.
+  /// Sets the function that the command runs, after all options have been added, and which options
+  /// need or exclude others. @throws std::logic_error if a row is not bound
   void runs(const std::function<void()>& run);
 
  private:

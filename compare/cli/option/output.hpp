@@ -57,8 +57,8 @@ using Formats = std::map<std::string, std::function<std::string()>>;
 /// @throws compare::OutputError naming the output that cannot be written
 void write_output(const OutputOptions& options, const std::string& content);
 
-/// Returns the formats of a document: text, json, csv. @param more  other formats, or in their
-/// place
+/// Returns the formats of a document: text, json, csv. The functions refer to the document.
+/// @param more  other formats, or in their place
 [[nodiscard]] Formats formats_of(const compare::Document& document, Formats more = {});
 
 /// Writes a result in the requested format.

@@ -32,13 +32,14 @@ struct TrackFrames {
 /// Returns the document's text, with some ten frames and those of events.
 [[nodiscard]] std::string track_text(const compare::TrackResult& found,
                                      const compare::Scene& scene);
-/// Returns one row per frame.
+/// Returns a header, then one row per frame.
 [[nodiscard]] std::string track_csv(const compare::TrackResult& found, const compare::Scene& scene,
                                     const TrackFrames& frames);
 
 /// Writes frames for ParaView: a series file with the times, and one polyline file per frame,
-/// `NAME_0000.vtk` for NAME.vtk.series. The series file is written last, when it is complete. The
-/// shapes are those of the rod with inertia, if there is one.
+/// `NAME_00000.vtk` for NAME.vtk.series, numbered by the index of the frame in the track. The
+/// series file is written last, when it is complete. The shapes are those of the rod with inertia,
+/// if there is one.
 /// @throws compare::OutputError naming the file that cannot be written
 void write_series(const compare::TrackResult& found, const compare::Scene& scene,
                   const TrackFrames& frames, const std::string& file);

@@ -21,7 +21,7 @@ namespace dlo::cli {
 /// Returns the document `dlo/bench/2`.
 [[nodiscard]] compare::Document benchmark_document(const compare::BenchmarkReport& report);
 
-/// Returns one row per run, then one per failure.
+/// Returns a header, one row per run, then one per failure.
 [[nodiscard]] std::string benchmark_csv(const compare::BenchmarkReport& report);
 
 /// Returns Tables 2 to 4, the key `moving` of the document of the paper.
@@ -31,7 +31,7 @@ namespace dlo::cli {
 [[nodiscard]] compare::Document paper_document(const compare::PaperReport& report,
                                                const compare::MovingReport& moving);
 
-/// Returns one number of the document per line: its path and its value.
+/// Returns a header, then one number of the document per line: its path and its value.
 [[nodiscard]] std::string paper_csv(const compare::Document& paper);
 
 /// Returns the effect of --update on each case of the baseline.
@@ -43,7 +43,8 @@ namespace dlo::cli {
 [[nodiscard]] std::string regression_text(const std::vector<compare::RegressionResult>& results,
                                           const std::string& file);
 
-/// Returns a regression as text, without the cases whose errors have not changed.
+/// Returns a regression as text, without the cases whose errors have not changed, which are only
+/// counted.
 [[nodiscard]] std::string regression_changes_text(
     const std::vector<compare::RegressionResult>& results, const std::string& file);
 
@@ -58,10 +59,11 @@ namespace dlo::cli {
 [[nodiscard]] compare::Document hard_cases_document(
     const std::vector<compare::StabilityResult>& results);
 
-/// Returns the largest stable c_F, measured and predicted: the document `dlo/stability-map/1`.
+/// Returns the largest stable c_F, measured and predicted, and the points of the map: the document
+/// `dlo/stability-map/1`. Its text omits the points.
 [[nodiscard]] compare::Document stability_map_document(const compare::StabilityMap& map);
 
-/// Returns one row per point of the map.
+/// Returns a header, then one row per point of the map.
 [[nodiscard]] std::string stability_map_csv(const compare::StabilityMap& map);
 
 /// Returns a table of classes for each simulator, followed by the causes of wrong scenes.

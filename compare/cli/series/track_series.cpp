@@ -28,7 +28,8 @@ using compare::TrackFrame;
 using compare::TrackOptions;
 using energy_model::ContactPart;
 
-/// Returns the contacts in words, such as "1 touching, 2 lying"; "-" if there is none.
+/// Returns the contacts in words, such as "1 touching, 2 lying", with the numbers of the obstacles
+/// from 1; "-" if there is none.
 std::string state_text(const TrackFrame& frame, const char* separator) {
   std::string text;
   for (const ContactPart& part : frame.contacts) {
