@@ -44,7 +44,7 @@ void bind_array(py::class_<Object, Options...>& bound, const char* name, const c
       words);
 }
 
-/// Binds the fields of a record as attributes.
+/// Binds the fields of a record that are in_python as attributes, except those of JSON.
 /// @param of  returns the record of an object of the class
 template <typename Object, typename... Options, typename T, typename Of>
 void bind_fields(py::class_<Object, Options...>& bound, std::span<const compare::Field<T>> fields,

@@ -32,8 +32,8 @@ class GilReleased {
   PyThreadState* state_;
 };
 
-/// Makes the end of the interpreter stop the calls of other threads, which are daemons, and wait
-/// for it.
+/// Makes the end of the interpreter stop the calls of other threads, which are daemons, and wait up
+/// to five seconds for it.
 /// @param module  the module that is being imported
 void stop_calls_at_exit(py::module_& module);
 

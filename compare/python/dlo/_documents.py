@@ -283,7 +283,8 @@ class ScoreCard(Document):
 
     @property
     def reason(self) -> Optional[str]:
-        """Cases that have changed, and the number of cases with each verdict; None without a baseline."""
+        """Cases that have changed, and the number of cases with each verdict; for an update that has succeeded, that the
+        baseline is written; None without a baseline."""
         return self._changes and self._changes.rstrip("\n")
 
     def to_markdown(self) -> str:
@@ -307,8 +308,9 @@ class Calibration(Document):
 
     def to_toml(self) -> str:
         """Returns the file that `dlo calibrate -o FILE.toml` writes: parameters of the force model; or from measured
-        shapes the rod and its fixture ("" if E is not identified and no shapes were predicted); or from a recorded
-        motion stiffness and damping ("" if the stiffness is not identified)."""
+        shapes the rod and its fixture ("" if E or a fitted density is not identified and no shapes were predicted, or
+        if the rod is given by one of bending_stiffness and mass_per_length alone); or from a recorded motion stiffness
+        and damping ("" if the stiffness is not identified)."""
         return self._toml
 
 

@@ -58,7 +58,8 @@ def _draw(ax: Any, panel: dict[str, Any]) -> None:
 
 
 def plot(result: Any, ax: Any = None) -> Any:
-    """Draws a result with a shape at equal aspect: in its plane if it has one, else in space."""
+    """Draws a result with a shape at equal aspect and returns the axes. ax: the axes to draw into, in the plane or in
+    space; None: new ones, in the plane of the result if it has one, else in space."""
     if ax is not None and not hasattr(ax, "get_figure"):
         allowed = 'axes of matplotlib, or None; plot().figure.savefig("FILE.svg") writes a file'
         raise InputError(f"ax = {ax!r}: a {type(ax).__name__} (allowed: {allowed})")

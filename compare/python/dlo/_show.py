@@ -9,7 +9,7 @@ from . import _plot
 
 
 def words(result: Any) -> str:
-    """Returns one line with the verdict, if there is one."""
+    """Returns one line: the verdict and its reason, else the RMS deviation, else the beginning of the text."""
     passed = getattr(result, "passed", None)
     if passed is not None:
         verdict = getattr(result, "verdict", "pass" if passed else "fail")
@@ -28,12 +28,12 @@ def line(result: Any) -> str:
 
 
 def svg(result: Any) -> Optional[str]:
-    """Returns the picture of a result with a shape; None without matplotlib."""
+    """Returns the picture of a result as SVG; None if the result has none, or without matplotlib."""
     return _plot.svg(result) if hasattr(result, "_panel") else None
 
 
 def html(result: Any) -> str:
-    """Returns verdict, picture and all numbers as HTML."""
+    """Returns the line of words(), the picture, if there is one, and the text as HTML."""
     picture = svg(result) or ""
     return (
         f"<div><p><b>{_html.escape(words(result))}</b></p>{picture[picture.find('<svg'):]}"
