@@ -154,7 +154,8 @@ class Simulation {
     }
   }
 
-  /// Returns the sum of the squared rotations in the last step, proportional to the kinetic energy.
+  /// Returns the sum of the squared rotations of the hinges in the last step, a measure of the
+  /// kinetic energy.
   [[nodiscard]] double motion() const {
     double sum = 0;
     for (int i = 0; i < links_; ++i) {

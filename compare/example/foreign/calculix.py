@@ -255,7 +255,8 @@ def displacements(lines, count):
 
 
 def is_folded(axis, s):
-    """Whether a brick is inverted. Green's strain of an inverted brick may be zero, so that it stays inverted."""
+    """Whether the middles of two adjacent planes are more than 10 % nearer or farther than at the beginning, as those
+    of an inverted brick. Its Green's strain may be zero, so that it stays inverted."""
     return any(abs(math.dist(a, b) / (t - r) - 1) > 0.1
                for a, b, r, t in zip(axis, axis[1:], s, s[1:]))
 

@@ -76,8 +76,9 @@ class Forces : public SimTK::Force::Custom::Implementation {
   const std::vector<MobilizedBody>& bodies_;
 };
 
-/// Minimises the energy to the smallest tolerance of its gradient [N m] that rounding allows; the
-/// minimiser throws if a tolerance is too small.
+/// Minimises the energy to the smallest tolerance of its gradient [N m] of 1e-9, 1e-8 and 1e-7 that
+/// rounding allows; the minimiser throws if a tolerance is too small.
+/// @throws SimTK::Exception::OptimizerFailed if all are
 State at_rest(const SimTK::MultibodySystem& system, const State& start) {
   for (Real tolerance = 1e-9;; tolerance *= 10) {
     State state = start;
