@@ -17,8 +17,8 @@ inline int arena_threads(int threads) {
 }
 
 /// Runs a function in an arena. If the system provides no more threads, oneTBB throws a plain
-/// std::runtime_error, a type that no other code here throws.
-/// @throws std::system_error in that case
+/// std::runtime_error. One that `function` itself throws is not distinguished from it.
+/// @throws std::system_error instead of a plain std::runtime_error
 template <typename Function>
 void execute(tbb::task_arena& arena, const Function& function) {
   try {

@@ -29,7 +29,7 @@ class SceneTemplate {
  public:
   /// @param name  name of the file, for messages and Scene::file
   /// @param folder  folder of the files that fields name, if it is not that of `name`
-  /// @throws InputError if the text is not TOML
+  /// @throws InputError if the text is neither TOML nor a model that a scene can be made from
   SceneTemplate(const std::string& text, const std::string& name,
                 std::vector<Material> known_materials = materials(),
                 MissingElements missing = MissingElements::refused, const std::string& folder = "");

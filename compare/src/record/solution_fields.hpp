@@ -28,7 +28,8 @@ struct SolvedShape {
 /// Returns the fields of a shape's deviation from another one.
 [[nodiscard]] std::span<const Field<Deviation>> deviation_fields();
 
-/// Returns the name of a status in documents; "failed" for all that have no shape.
+/// Returns the name of a status in documents; "failed" if the solver was not called, was stopped by
+/// a limit or gave up.
 [[nodiscard]] const char* status_name(energy_model::SolveStatus status);
 
 /// Whether a solution is stable, as far as this is known. If a shape is not verified, its smallest

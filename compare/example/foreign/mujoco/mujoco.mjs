@@ -22,7 +22,7 @@ const fail = (why) => {
   console.error(`mujoco.mjs: ${why}`);
   process.exit(1);
 };
-/** Of a scene that it does not have: exit status 3. */
+/** Ends with exit status 3, which means that the scene is not supported. */
 const refuse = (why) => {
   console.error(`mujoco.mjs: not supported: ${why}`);
   process.exit(3);
@@ -35,7 +35,7 @@ const product = ([w, ...v], [u, ...r]) => {
   return [w * u - dot(v, r), ...v.map((x, i) => w * r[i] + u * x + c[i])];
 };
 const inverse = ([w, x, y, z]) => [w, -x, -y, -z];
-/** The shortest turn of direction a to direction b. */
+/** Returns the shortest rotation from direction a to direction b, which are not opposite. */
 const shortestTurn = (a, b) => {
   const scale = Math.hypot(...a) * Math.hypot(...b);
   const w = Math.sqrt((1 + dot(a, b) / scale) / 2);
@@ -79,7 +79,8 @@ function readChain(scene) {
     origin: first.position_m, end: second?.position_m, length: rod.length_m };
 }
 
-/** A quarter of the step that the fastest motion allows, by a bound of what weight adds to the springs' 1/s^2. */
+/** Returns a quarter of the stability limit 2 / omega of the fastest motion [s]. omega^2 is at most 1 / s^2 from the
+ * springs plus a bound of the contribution of the weight. */
 function timeStep({ hinges, force, segment: [h] }) {
   // Turns of the hinges j and k move a point beyond both by its distance from the farther one.
   const weight = force.reduce((sum, one, i) => sum + (Math.hypot(...one) * h * i * (i + 1)) / 2, 0);
@@ -111,7 +112,7 @@ function mjcf(chain) {
 `;
 }
 
-/** Places of the points from the first hinge on. */
+/** Returns the positions at rest of the hinges and of the end of the last segment, beginning with the first hinge. */
 function solve(mujoco, chain, xml) {
   const model = mujoco.MjModel.from_xml_string(xml);
   const data = new mujoco.MjData(model);
