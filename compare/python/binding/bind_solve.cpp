@@ -164,7 +164,7 @@ void bind_arrays(Class& bound) {
              [](const SolvedScene& s) { return &s.found.curvature; });
   bind_array(bound, "tension",
              "Tension at the points, > 0 where the rod is pulled [N], shape (M,), or (0,) where\n"
-             "the model has none; read only.",
+             "the model has none or the rod touches an obstacle that yields; read only.",
              [](const SolvedScene& s) { return &s.found.tension; });
   bind_array(bound, "d1",
              "First directors of the rod's frame [-], shape (M, 3), or (0, 3) where the model has\n"

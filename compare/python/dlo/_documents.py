@@ -151,7 +151,8 @@ def _moving(path: str, doc: str) -> Attribute[NDArray[numpy.float64]]:
 
 
 class Track(Drawn):
-    """A rod while its grippers or obstacles move, frame by frame; result of track()."""
+    """A rod while its grippers or obstacles move, frame by frame; result of track(). Arrays of the rod with inertia have
+    fewer frames if it stopped earlier."""
 
     arc_length = _at("arc_length_m", _array, "Arc lengths of the frames' points [m], shape (M,).")
     time = _at("frames/*/time_s", _array, "Times of the frames [s], shape (F,).")
