@@ -16,7 +16,7 @@ struct OptionCondition {
   std::vector<std::string> values;
 };
 inline constexpr const char* any_value = "*";
-/// Placeholder for every value that is an integer.
+/// Placeholder for every value that consists of digits alone.
 inline constexpr const char* whole_number = "N";
 
 enum class NoEffect { refused, stated };

@@ -17,8 +17,10 @@ struct LeadingNumber {
   std::errc error = std::errc::invalid_argument;  ///< no error if it is a number
 };
 
-/// Reads a number at the beginning of a text. All numbers are read here: the decimal separator is a
-/// point in every locale, and neither "+" nor blanks may precede it.
+/// Reads a number at the beginning of a text, up to the first character that does not belong to it.
+/// The decimal separator is a point in every locale, and neither "+" nor blanks may precede the
+/// number. "inf" and "nan" are floating-point numbers. The value is 0 if there is none, or if it is
+/// out of range.
 template <typename Number>
 [[nodiscard]] LeadingNumber<Number> leading_number(std::string_view text) {
   LeadingNumber<Number> result;

@@ -23,8 +23,9 @@ struct CsvForm {
   char separator = ',';
   /// Characters that are skipped at both ends of a line and of a field.
   std::string_view trimmed_characters = " \t\r";
-  /// One more is read, so that the reader can report it.
+  /// Largest number of fields in a row. One more is read, so that the reader can report it.
   std::size_t most_fields = std::numeric_limits<std::size_t>::max();
+  /// Number of rows after which the reading ends.
   std::size_t most_rows = std::numeric_limits<std::size_t>::max();
 };
 
