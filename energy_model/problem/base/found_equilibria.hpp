@@ -61,8 +61,9 @@ struct Combinations {
 };
 
 /// Returns the first `most` combinations in this order: fewest unstable candidates first, then
-/// lowest sum of energies; equal candidates keep their order. The search is best-first, so that
-/// neither time nor memory grows with the product of the numbers of candidates.
+/// lowest sum of energies; equal candidates keep their order. Spans are added one by one, and only
+/// the first `most` combinations are kept, so that neither time nor memory grows with the product
+/// of the numbers of candidates.
 /// @param candidates  candidates of each span, in any order. There is no combination if one span
 ///                    has none
 [[nodiscard]] Combinations lowest_combinations(

@@ -30,10 +30,12 @@ void legendre_slopes(double xi, Eigen::Ref<Eigen::VectorXd> slopes);
 /// Returns the table for K terms, which is computed once, with Q = K + 6. The sines and cosines of
 /// a tangent angle of degree K in the integrand are then resolved as accurately as the angle
 /// itself. Thread-safe.
+/// @throws std::invalid_argument unless 1 <= terms <= max_terms
 [[nodiscard]] const LegendreTable& legendre_table(int terms);
 
 /// Returns the table for K terms with Q = 3 K / 2 + 8, at whose nodes directors with strains of K
 /// terms are collocated. Thread-safe.
+/// @throws std::invalid_argument unless 1 <= terms <= max_terms
 [[nodiscard]] const LegendreTable& director_table(int terms);
 
 /// Largest number of terms of a table.

@@ -14,7 +14,7 @@
 namespace dlo::energy_model {
 namespace {
 
-/// Share of EI/l^2 and EI/l below which forces and moments are rounding errors of the solver. 1e-8
+/// Smallest force and couple to which an imbalance is compared, as a share of EI/l^2 and EI/l. 1e-8
 /// of this share is a thousand times the rounding error of a rod bent by forces of EI/l^2.
 constexpr double negligible_share = 1e-4;
 
@@ -217,7 +217,8 @@ Eigen::Vector3d Action::moment_about(const Eigen::Vector3d& origin) const {
 double Imbalance::share() const {
   const double of_force = force / largest_force;
   const double of_moment = moment / largest_moment;
-  // A force that is NaN makes the moment NaN too, and this comparison then returns the moment.
+  // An action whose force is NaN makes the moment NaN too, and this comparison then returns the
+  // moment.
   return of_force > of_moment ? of_force : of_moment;
 }
 

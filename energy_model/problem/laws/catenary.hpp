@@ -22,7 +22,8 @@ struct Catenary {
   Eigen::Vector3d horizontal;  ///< horizontal unit vector along growing s
   Eigen::Vector3d up;          ///< vertical unit vector
 
-  /// Returns the arc length from the lowest point, or from the end of the part that lies [m].
+  /// Returns the arc length from the lowest point, negative before it, or beyond it from the end of
+  /// the part that lies [m]; 0 on that part.
   [[nodiscard]] double hanging_arc_length(double s) const;
   /// Returns T / w [m], which is the height above the line's directrix.
   [[nodiscard]] double height(double s) const;

@@ -97,7 +97,7 @@ void add_loads_on_clamps(const Problem& problem, Equilibrium& result);
 [[nodiscard]] std::vector<double> kink_positions(const Problem& problem,
                                                  const std::vector<ContactPart>& contacts);
 
-/// Converts energies from EI/l to [J].
+/// Converts energies from EI/l to [J]; `contact` is not converted and becomes 0.
 [[nodiscard]] Energies to_joules(const Problem& problem, const Energies& own_units);
 
 /// Moves the energy of line loads from `gravity` to `load`, because solvers treat line loads as
