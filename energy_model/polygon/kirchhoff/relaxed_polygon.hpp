@@ -90,7 +90,8 @@ struct ChordConstraint {
 /// direction of a clamp. In a plane there are two normals, in space six or four around the line.
 /// For a rod that is not round there are two more: its natural shape from its first clamp on, and
 /// tangents against the force. A round rod may be in equilibrium in the latter and stay there. In
-/// space, guesses that would lie in a plane are tilted out of it.
+/// space, the four guesses of such a rod that have no angle a(x) are tilted out of the plane in
+/// which they might lie.
 [[nodiscard]] std::vector<std::vector<Eigen::Quaterniond>> polygon_starts(const RodSpan& span,
                                                                           const RodMesh& mesh,
                                                                           Motion motion);

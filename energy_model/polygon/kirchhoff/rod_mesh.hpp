@@ -80,7 +80,7 @@ struct RodMesh {
 [[nodiscard]] RodMesh mesh_at(const RodSpan& span, const Eigen::VectorXd& nodes);
 
 /// Inner force n, of the part beyond on the part before, if the first grip alone carried weight and
-/// loads.
+/// loads. Drag and loads that follow the rod are not included.
 struct ForceField {
   Eigen::Matrix3Xd on_interval;  ///< force in the middle of each interval
   Eigen::Matrix3Xd after_node;

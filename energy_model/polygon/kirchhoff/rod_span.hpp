@@ -91,14 +91,14 @@ using ClampFrames = std::vector<std::optional<Eigen::Matrix3d>>;
 
 /// Cuts a problem at its clamps, as for a round rod that is intrinsically straight. Grips within
 /// 1e-9 l of an end of the rod are moved to that end.
-/// @throws std::invalid_argument if the problem is out of range, has obstacles, or grips are
-/// farther apart than the rod between them
+/// @throws std::invalid_argument if the problem is out of range or has obstacles, or as
+/// ordered_grips()
 [[nodiscard]] std::vector<RodSpan> cut_at_clamps(const Problem& problem);
 
 /// Returns the whole rod as one span with its clamps. Obstacles are ignored, and loads on clamps
 /// are carried by the gripper.
 /// @throws std::invalid_argument if the problem is out of range, or the frame of the first clamp of
-/// a rod with material directors is undetermined
+/// a rod with material directors is undetermined, or as ordered_grips()
 [[nodiscard]] RodSpan whole_span(const Problem& problem);
 
 /// Returns the whole of a rod with material directors as one span, with its natural strains and its
@@ -109,8 +109,9 @@ using ClampFrames = std::vector<std::optional<Eigen::Matrix3d>>;
 /// Returns the whole rod as whole_directed_span() or whole_span() does, for loads without a
 /// potential: the frame of the first clamp is that in which such loads are given, for a round rod
 /// too.
-/// @throws std::invalid_argument as whole_directed_span(), or if a load follows a rod along a d1
-/// that is undetermined
+/// @throws std::invalid_argument as whole_directed_span(), or if a load follows a round rod along
+/// d1 or d2 and there is no clamp, d1 is undetermined, or the rod leaves a plane without a
+/// torsional_stiffness
 [[nodiscard]] RodSpan whole_span_with_axes(const Problem& problem);
 
 /// Returns natural strains at count + 1 equally spaced points and in the middle of each part; empty
@@ -130,7 +131,8 @@ using ClampFrames = std::vector<std::optional<Eigen::Matrix3d>>;
 /// Returns the span with its drag, the loads that follow it and all couples multiplied by a factor.
 [[nodiscard]] RodSpan scale_nonpotential_loads(RodSpan span, double factor);
 
-/// Returns the sum of the norms of weight and loads.
+/// Returns the sum of the norms of weight and loads. Drag counts with Drag::largest(), a couple
+/// divided by the length of the span.
 [[nodiscard]] double total_load(const RodSpan& span);
 
 }  // namespace dlo::energy_model

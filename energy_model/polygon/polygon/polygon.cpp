@@ -198,8 +198,9 @@ class PolygonDescent {
     return std::nullopt;
   }
 
-  /// Evaluates energy, gradient and residual of the points. @return the largest force that acts on
-  /// them [N]
+  /// Evaluates energy, gradient and residual of the points. @return scale of the forces that act
+  /// [N]: the sum of the sizes of all node forces, or the largest force on a held point if that is
+  /// larger
   double evaluate() {
     result_.energy = energy_ = polygon_energy(problem_, result_.points, gradient_);
     ++result_.evaluations;

@@ -25,7 +25,7 @@ enum class HessianTerms {
   /// All terms except those that make the Hessian negative: the changes of direction of compressed
   /// segments, of moments of joints and of forces of round obstacles. Far from equilibrium these
   /// terms are the largest and the least informative (as in projected Newton methods for cloth:
-  /// Teran et al., 2005).
+  /// Teran et al., 2005). The terms of twists remain, whatever their sign.
   positive_terms,
 };
 
