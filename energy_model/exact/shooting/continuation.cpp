@@ -16,7 +16,8 @@
 namespace dlo::energy_model {
 namespace {
 
-// Shots of a step after which the next one is longer; Newton's method needs two per iteration.
+// Largest number of shots of a step after which the next one is longer; Newton's method needs two
+// per iteration.
 constexpr int step_growth_integrations = 12;
 constexpr double step_growth = 1.6;  // ratio of a longer step to the one before it
 // Maximum number of Newton iterations; more are slower than a shorter step.

@@ -58,8 +58,8 @@ namespace dlo::energy_model {
                                               const ClampFrames& frames,
                                               const ShootingOptions& options);
 
-/// Follows the gradient flow from beside an unstable equilibrium, on one side of it and then on the
-/// other.
+/// Follows the gradient flow from beside an unstable equilibrium, on one side of it and, if that
+/// does not converge, on the other.
 [[nodiscard]] SpanEquilibrium leave_saddle(const RodSpan& span, const SpanEquilibrium& saddle,
                                            const ShootingOptions& options);
 

@@ -43,7 +43,7 @@ inline constexpr double largest_growth = 3;
 
 /// Solves for the nodes by Newton's method from an initial guess (shooting_system.hpp), without
 /// energies and stability. If frames are held at both ends of a round rod, they are rotated by many
-/// turns, and its shape has nearly zero modes; close_gaps.hpp describes the steps then.
+/// turns, and its shape has nearly zero modes; close_gaps.cpp describes the steps then.
 /// @param start  cross-sections, one for each node of the mesh
 [[nodiscard]] SpanEquilibrium close_span(const RodSpan& span, const RodMesh& mesh,
                                          const std::vector<RodState>& start,
@@ -62,7 +62,8 @@ inline constexpr double largest_growth = 3;
 /// have a potential.
 void complete(const RodSpan& span, double tolerance, SpanEquilibrium& equilibrium);
 
-/// Computes the second variation of an equilibrium.
+/// Computes the second variation of an equilibrium; if that fails, the equilibrium no longer counts
+/// as converged.
 /// @param tolerance  local error of the integrator
 void judge_stability(const RodSpan& span, double tolerance, SpanEquilibrium& equilibrium);
 

@@ -23,7 +23,9 @@ struct SpanSearchResult {
 /// results is stable. If a polygon's force is large for its mesh, or Newton's method does not
 /// converge, the polygon is relaxed again on a finer mesh. From an unstable equilibrium below all
 /// stable ones, the gradient flow of the energy leads to a stable one. If nothing is found, a
-/// failed result is returned.
+/// failed result is returned. Equilibria of a span that stretches are continued from those of the
+/// inextensible span (stretch_span()), and Newton's method also starts from straight lines between
+/// two or more grips.
 ///
 /// Frames after the first clamp are released for this search. If clamps hold frames, those of the
 /// lowest equilibrium are then rotated to the held ones (twist_span()); the result is then one
@@ -31,10 +33,10 @@ struct SpanSearchResult {
 [[nodiscard]] SpanSearchResult search_span(const RodSpan& span, double tolerance,
                                            const Deadline& deadline);
 
-/// Whether a round span is planar and has one clamp and one section, and shooting from its tip is
-/// well posed. The sum of weight and loads over EI/l^2 may be at most 4e5 if they are parallel
-/// (beyond, the tip angle against them is below the smallest number), and at most 60 otherwise
-/// (beyond, rounding at the tip is amplified too much).
+/// Whether a round span is planar and inextensible and has one clamp, no other grip, one section
+/// and uniform weight, and shooting from its tip is well posed. The sum of weight and loads over
+/// EI/l^2 may be at most 4e5 if they are parallel (beyond, the tip angle against them is below the
+/// smallest number), and at most 60 otherwise (beyond, rounding at the tip is amplified too much).
 [[nodiscard]] bool tip_can_be_scanned(const RodSpan& span);
 
 /// Finds equilibria of a span in its plane, stable and unstable ones, by shooting from the free

@@ -15,7 +15,8 @@ namespace {
 
 // Largest accepted depth, in l; a tenth of that of solve_energy().
 constexpr double confirmed_depth = 1e-9;
-// Largest accepted tensile contact force, divided by 1 + the largest force.
+// Largest accepted tensile contact force or pressure, divided by the largest grip force or 1 + the
+// total load, whichever is larger.
 constexpr double largest_tensile_force = 1e-7;
 constexpr int samples = 8;  // parts per interval at whose ends pressures are computed
 // Width in l below which a part is not halved further: no point within it is deeper than its ends
@@ -59,7 +60,8 @@ class ClosedRod {
     }
   }
 
-  /// Returns the reason why the contacts are not confirmed; empty: they are.
+  /// Returns the reason why the contacts are not confirmed; empty: they are. Sets
+  /// Equilibrium::penetration unless the integrator failed.
   [[nodiscard]] std::string contact_failure(Equilibrium& result) const {
     double largest = 1 + total_load(start_.span);
     for (const Reaction& grip : result.grips) {
@@ -113,8 +115,8 @@ class ClosedRod {
   }
 
   /// Returns the largest depth of a part in the bodies if it exceeds `known` by more than a
-  /// hundredth and confirmed_depth; otherwise a depth of one of its points. Halves the part until
-  /// least_clearance() shows this. NaN: the integrator failed.
+  /// hundredth and confirmed_depth; otherwise `known` or a depth of one of its points, whichever is
+  /// larger. Halves the part until least_clearance() shows this. NaN: the integrator failed.
   [[nodiscard]] double deepest(Eigen::Index i, const Part& part, double known) const {
     double depth = known;
     double least = 0;

@@ -36,8 +36,8 @@ struct ContactStart {
 };
 
 /// Creates an initial guess from a shape that states which parts of the rod touch which obstacles.
-/// @return std::nullopt for contacts that are not supported: on both sides of a grip, next to
-/// another part that lies, or with another action on a part that lies
+/// @return std::nullopt for contacts that confirm_contacts() does not support, or if the integrator
+/// failed along a part that lies
 [[nodiscard]] std::optional<ContactStart> start_with_contacts(const Problem& problem,
                                                               const Equilibrium& shape,
                                                               double tolerance);
@@ -48,9 +48,10 @@ struct ContactStart {
 /// @param shape      shape of this problem or of a similar one, with the reactions of its grips and
 ///               its contacts
 /// @param tolerance  local error of the integrator
-/// @return std::nullopt for another kind of problem, and for contacts that are not supported: a
-/// point contact at a grip, a load or a change of section, a part that lies across one of these, or
-/// two parts that lie next to each other
+/// @return std::nullopt for another kind of problem, for a shape without samples or without a
+/// reaction for each grip, and for contacts that are not supported: a point contact at a grip, a
+/// load or a change of section, a part that lies across one of these, or two parts that lie next to
+/// each other
 [[nodiscard]] std::optional<Equilibrium> confirm_contacts(const Problem& problem,
                                                           const Equilibrium& shape,
                                                           double tolerance,
