@@ -157,8 +157,8 @@ Eigen::VectorXd SpanDynamics::frame_adjoint(const FrameGradient& f) {
   return result.head(size());
 }
 
-/// Returns the derivatives by the tangents of the work of all forces on the rod with these
-/// multipliers: the internal force required by them.
+/// Returns minus the derivatives by the tangents of the work of all forces on the rod with these
+/// multipliers, inertia included: the internal force that balances them.
 Eigen::MatrixX3d SpanDynamics::work_gradient(
     const Eigen::Ref<const Eigen::VectorXd>& multipliers) const {
   Eigen::MatrixX3d forces = forces_;
@@ -171,8 +171,8 @@ Eigen::MatrixX3d SpanDynamics::work_gradient(
   return result;
 }
 
-/// Returns the couple on each element at its end: the couple of the clamp at the end of the span,
-/// and zero for all elements but the last.
+/// Returns minus the couple on each element at its end: minus the torque of the clamp at the end of
+/// the span, and zero for all elements but the last.
 std::vector<Eigen::Vector3d> SpanDynamics::couples(
     const Eigen::Ref<const Eigen::VectorXd>& multipliers) const {
   std::vector<Eigen::Vector3d> result(nodes_.elements().size(), Eigen::Vector3d::Zero());

@@ -309,8 +309,8 @@ bool SpanIntegrator::take_step(SpanInstant& at, double step) {
 }
 
 /// Takes one step and two steps of half the size. The halves provide the initial guess of the full
-/// step, and a result with a much smaller error. @return whether both results differ by less than
-/// the tolerance
+/// step, and a result with a much smaller error. @return whether the step is accepted: both results
+/// and the energy balance agree to the tolerance
 bool SpanIntegrator::take_two_halves(SpanInstant& at, double step) {
   if (!std::isfinite(energy_)) energy_ = update_energy_range(after_break(at.time), at);
   SpanInstant once = at;

@@ -97,7 +97,7 @@ class SpanIntegrator {
   [[nodiscard]] double depth() const { return depth_; }
 
  private:
-  /// Size of the first step.
+  /// Size of the first step, and of the first one after a break of the motion.
   static constexpr double first_step = 1e-3;
   /// Factor of Newton's matrix for one step size.
   struct Factor {

@@ -106,7 +106,8 @@ class RodVibrations {
     return {};
   }
 
-  /// Returns the modes of all spans, the slowest first.
+  /// Returns the modes of all spans with the lowest omega_squared, the lowest first; at most
+  /// VibrationOptions::count.
   [[nodiscard]] std::vector<VibrationMode> modes() const {
     std::vector<VibrationMode> result;
     for (const std::shared_ptr<const VibratingSpan>& span : spans_) {
@@ -246,7 +247,8 @@ void check_options(const VibrationOptions& options) {
   require(options.time_limit > 0, where, "time_limit", options.time_limit, "> 0");
 }
 
-/// Largest deviation of a straight rod's grips, by rounding.
+/// Largest deviation of a straight rod's grips from the line, divided by the length of rod from the
+/// first grip, and of their directions; by rounding.
 constexpr double straight_rounding = 1e-9;
 
 /// Returns the problem with a small slack between its grips, which is required of problems. A
