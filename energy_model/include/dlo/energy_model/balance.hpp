@@ -33,7 +33,7 @@ struct Imbalance {
   double largest_moment = 0;
 
   /// Returns force / largest_force or moment / largest_moment, whichever is larger [-]; NaN if an
-  /// action contains NaN.
+  /// action contains NaN or both divisors are 0.
   [[nodiscard]] double share() const;
   /// Returns a text with both sums and their shares of the largest force and moment.
   [[nodiscard]] std::string text() const;
@@ -52,9 +52,10 @@ struct Imbalance {
 /// @param shape  equilibrium with `sample` and a reaction for each grip
 [[nodiscard]] Imbalance imbalance_of(const Problem& problem, const Equilibrium& shape);
 
-/// Sets the status of an equilibrium to not_verified if its imbalance is larger than `allowed`, and
-/// writes both sums into its message. Results that are not claimed to be an equilibrium are
-/// unchanged.
+/// Sets the status of an equilibrium to not_verified if its Imbalance::share() is larger than
+/// `allowed` or NaN, and then writes both sums into its message. Checks results that are
+/// `converged`, `roundoff_limited` or `saddle`, and `not_verified` ones whose loads have no
+/// potential. Others are unchanged, and so are results that cannot be sampled.
 void judge_balance(const Problem& problem, Equilibrium& equilibrium,
                    double allowed = allowed_imbalance);
 

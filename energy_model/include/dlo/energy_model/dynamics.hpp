@@ -44,7 +44,9 @@ using StartingShape = std::function<Samples(std::span<const double>)>;
 /// Velocities of the rod's points at M arc lengths, 3 x M [m/s].
 using StartingVelocities = std::function<Eigen::Matrix3Xd(std::span<const double>)>;
 
-/// Returns the shape of a straight rod along a direction, as the start of a simulation.
+/// Returns the shape of a straight rod along a direction, as the start of a simulation; its points
+/// begin at the origin.
+/// @throws std::invalid_argument unless the direction has a finite length > 0
 [[nodiscard]] StartingShape straight_rod(const Eigen::Vector3d& direction);
 
 /// Energies of a moving rod at one time, and the work and losses up to that time [J].
@@ -90,7 +92,9 @@ struct [[nodiscard]] Dynamics {
   std::string message = "never ran";  ///< the status in words
   std::vector<MovingFrame> frames;    ///< states at the requested times that were reached
   int terms = 0;                      ///< coefficients of each element and strain component
-  long steps = 0;  ///< number of integrator steps of all spans, rejected ones included
+  /// Number of solved steps of all spans, rejected ones included. With an adapted step size a step
+  /// and its two halves count as three.
+  long steps = 0;
   /// Size of the smallest step [s].
   double smallest_step = std::numeric_limits<double>::infinity();
   /// Sum over all steps of the change by halving the step: root mean square of the points'
@@ -108,8 +112,8 @@ struct [[nodiscard]] Dynamics {
 
 /// Discretisation and accuracy of a simulation.
 struct DynamicsOptions {
-  /// Coefficients of each element and strain component, > 0; converged if more do not change the
-  /// result.
+  /// Coefficients of each element and strain component, 1 to max_terms = 128; converged if more do
+  /// not change the result.
   int terms = 12;
   /// Error limit of one step. Two quantities are limited: the root mean square of the displacement
   /// between one step and two steps of half the size, divided by the length; and the error of the
@@ -148,7 +152,8 @@ struct DynamicsOptions {
 ///               they do
 /// @param times  times of the frames [s], growing. The motion begins at 0, or at the first of them
 ///               if that is negative
-/// @throws std::invalid_argument if an argument is out of range
+/// @throws std::invalid_argument if an argument is out of range; for couples, loads that follow the
+/// rod, Problem::drag, axial_stiffness and confined_to_plane; and as solve_energy() for grips
 Dynamics simulate(const MovingRod& rod, const StartingShape& start, std::span<const double> times,
                   const DynamicsOptions& options = {});
 

@@ -56,7 +56,8 @@ struct ContactPart {
 struct [[nodiscard]] Equilibrium {
   SolveStatus status = SolveStatus::not_run;  ///< outcome, and the claim on the shape
   std::string message = "never ran";  ///< the status in words, with the number of zero modes
-  /// Cost of the call; in a list of equilibria only the first one counts the whole cost.
+  /// Cost of the call; in a list of equilibria only the first one is certain to count the whole
+  /// cost.
   /// `energy`: evaluations of energy and gradient by descents and Newton's method from all initial
   /// guesses, and of the polygons that detect contact. Hessians and the evaluations that only
   /// verify a shape do not count.
@@ -76,17 +77,17 @@ struct [[nodiscard]] Equilibrium {
   double residual = -1;
   /// `energy`: estimated distance of the points from those of an equilibrium, divided by the rod
   /// length: the remaining error of solver, rounding and truncation, divided by the eigenvalue
-  /// nearest zero (README, certificate). At most 2, which is no bound. NaN: unknown, always for
-  /// `exact`.
+  /// nearest zero (README, certificate). At most 2, which is no bound. NaN: unknown, for `exact`
+  /// always except for a shape of shape_without_search().
   double error_estimate = std::numeric_limits<double>::quiet_NaN();
   /// Smallest eigenvalue of the second variation in the directions that the grips leave free, out
   /// of the plane of a planar shape too; negative: unstable. `energy`: eigenvalue of the reduced
   /// Hessian over EI/l, in the norm of the bending energy. `exact`: relative to int |eta'|^2 +
   /// |eta|^2 ds, where eta is the change of the tangent (with material directors: the spin) and
-  /// lengths are in l. NaN: unknown. It is unknown for `exact` if the loads have no potential. It
-  /// may be unknown for `energy` if the rod has a free end whose part from the nearest grip, a
-  /// clamp, is uniform, straight and round and lies in a plane under parallel forces, because the
-  /// stability of such a part is proven without it.
+  /// lengths are in l. NaN: unknown. It is unknown for a shape of shape_without_search(), and for
+  /// `exact` if the loads have no potential. It may be unknown for `energy` if the rod has a free
+  /// end whose part from the nearest grip, a clamp, is uniform, straight and round and lies in a
+  /// plane under parallel forces, because the stability of such a part is proven without it.
   double smallest_eigenvalue = std::numeric_limits<double>::quiet_NaN();
   /// `energy`, if `near_singular`: number of eigenvalues that are zero to the tolerance. Each is a
   /// direction in which a fold or a bifurcation leaves the shape undetermined. It is 0 if only the

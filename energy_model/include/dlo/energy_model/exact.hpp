@@ -42,8 +42,9 @@ struct ExactOptions {
 /// @throws std::invalid_argument if the problem or an option is out of range. Also for obstacles
 /// without a start, for yielding obstacles, for obstacles together with natural strains, couples,
 /// axial_stiffness or a line load that varies along the rod, for axial_stiffness with loads that
-/// have no potential, for confined_to_plane, and for a clamp without a frame between two that hold
-/// frames of a round straight rod
+/// have no potential, for confined_to_plane, for a clamp without a frame between two that hold
+/// frames of a round straight rod, and, if a load has no potential, for obstacles, a load that
+/// follows the rod at a clamp, and more than two clamps with frames of a round straight rod
 Equilibrium solve_exact(const Problem& problem, const ExactOptions& options = {});
 
 /// Returns every equilibrium that the scan or the search finds: `converged` ones first, by energy,

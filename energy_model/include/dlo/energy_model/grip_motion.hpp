@@ -41,7 +41,7 @@ struct MotionValue {
 /// @param about     axis of the rotation, any length > 0
 /// @param distance  distance along the first axis [m] by time [s]; null: the grip does not move
 /// @param angle     angle about the second axis [rad] by time [s]; null: the grip does not rotate
-/// @throws std::invalid_argument if an axis has no length
+/// @throws std::invalid_argument if the axis of a function that is not null has no length
 [[nodiscard]] GripMotion moving(const Eigen::Vector3d& position, const Eigen::Vector3d& along,
                                 std::function<MotionValue(double)> distance,
                                 const Eigen::Vector3d& about,

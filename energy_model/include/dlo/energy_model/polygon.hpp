@@ -22,8 +22,8 @@ struct HeldPoint {
 struct PointObstacle {
   obstacle::Body body;   ///< shape and position of the body [m]
   double stiffness = 0;  ///< force on a segment per depth [N/m], >= 0
-  /// Sample points per segment, >= 1, each with its share of the stiffness. 1: only the points
-  /// where segments meet (obstacle::samples_per_segment).
+  /// Sample points per segment, >= 1, each with its share of the stiffness. 1: only the points of
+  /// the polygon (obstacle::samples_per_segment).
   int samples = 1;
   /// Stiffness of each segment [N/m], n numbers >= 0, instead of `stiffness`; empty: equal. A point
   /// where two segments meet has their mean.
@@ -103,13 +103,13 @@ struct [[nodiscard]] PolygonResult {
   std::vector<double> twists;  ///< angle theta of each of PolygonProblem::twists [rad]
 };
 
-/// Minimises E by damped Newton steps over the free points (a banded matrix, GSL's LDL^T), each of
-/// which must decrease E, with c_c increased in stages (energy_model/doc/polygon.md). A saddle is
-/// left along the lowest mode. `converged` and `roundoff_limited` claim three conditions at the
-/// returned points, up to rounding: the Hessian over all free points in space (with natural turns:
-/// in its plane) is positive definite; Newton's step is below 1e-7 polygon lengths; the residual
-/// force on each free point is at most 1e-10 of the forces that act. Otherwise the status is
-/// `not_verified`, and the message states the number.
+/// Minimises E by damped Newton steps over the free points (a banded matrix, GSL's LDL^T), none of
+/// which increases E beyond rounding, with c_c increased in stages (energy_model/doc/polygon.md). A
+/// saddle is left along the lowest mode. `converged` and `roundoff_limited` claim three conditions
+/// at the returned points, up to rounding: the Hessian over all free points in space (with natural
+/// turns: in its plane) is positive definite; Newton's step is below 1e-7 polygon lengths; the
+/// residual force on each free point is at most 1e-10 of the forces that act. If one does not hold,
+/// the status is `not_verified` instead, and the message states the cause.
 /// @param start  initial positions [m], 3 x (n+1), no segment of zero length; held points are moved
 ///               to their prescribed positions
 /// @throws std::invalid_argument if the problem, an option or the start is out of range
@@ -118,8 +118,9 @@ PolygonResult solve_polygon(const PolygonProblem& problem,
                             const PolygonOptions& options = {});
 
 /// Follows the shape while the end frames are rotated in small steps from their twist-free rotation
-/// to the prescribed one. Each step starts from the shape of the previous step, and descends to a
-/// minimum if that shape has lost its stability.
+/// to the prescribed one. Each step starts from the shape of the previous step, extrapolated
+/// linearly unless that step has jumped, and descends to a minimum if that shape has lost its
+/// stability.
 /// @param problem  problem with the twists of the result; `angle` is theta of `start`
 /// @param start    equilibrium without twist [m], 3 x (n+1)
 /// @throws std::invalid_argument as solve_polygon

@@ -81,8 +81,8 @@ struct Section {
   /// across.
   std::optional<double> bending_stiffness_2 = std::nullopt;
   /// Curvature of the stress-free shape about d1 and d2 [1/m], constant in the section. None: that
-  /// of Problem::natural_strains. If a section has its own, Problem::natural_strains must not be
-  /// empty.
+  /// of Problem::natural_strains. If a section has its own curvature or twist,
+  /// Problem::natural_strains must not be empty.
   std::optional<Eigen::Vector2d> natural_curvature = std::nullopt;
   /// Constant twist of the stress-free shape [rad/m]; none: that of Problem::natural_strains.
   std::optional<double> natural_twist = std::nullopt;
@@ -120,7 +120,7 @@ struct Problem {
   std::optional<double> bending_stiffness_2 = std::nullopt;
   /// Whether the rod is confined to the plane of grips and forces, as between two plates: shapes
   /// out of the plane are excluded, and stability is judged in the plane. Only `energy`, without
-  /// obstacles and held frames.
+  /// obstacles and with at most one clamp that holds a frame.
   bool confined_to_plane = false;
   /// EA [N], > 0, of the whole rod: r' = (1 + N/EA) t, N the tension. Arc lengths, weight, loads
   /// per length and strains refer to the unstretched rod. None: inextensible. Only `exact` accepts
@@ -199,7 +199,7 @@ struct Samples {
 };
 
 /// Returns M arc lengths from 0 to `length`, equally spaced [m].
-/// @throws std::invalid_argument unless M >= 2
+/// @throws std::invalid_argument unless M >= 2 and `length` is finite and > 0
 [[nodiscard]] std::vector<double> equal_arc_lengths(double length, Eigen::Index count);
 
 }  // namespace dlo::energy_model

@@ -6,8 +6,9 @@
 
 namespace dlo::energy_model {
 
-/// EI / (w l^3) below which both models treat a rod as a line. The bending layers at its ends are
-/// then shorter than 1e-5 l, which neither a series nor shots resolve.
+/// EI / (w l^3) below which both models return catenary_limit(), if that applies and is accurate
+/// enough (shape_without_search()). Under a tension of w l the bending layers at the ends are then
+/// shorter than 1e-5 l, which neither a series nor shots resolve.
 inline constexpr double catenary_limit_stiffness = 1e-10;
 
 /// Whether EI / (w l^3) of the rod, w its weight per length, is less than catenary_limit_stiffness.
@@ -26,12 +27,14 @@ inline constexpr double catenary_limit_stiffness = 1e-10;
 /// concentrated force w lambda acts at its end.
 ///
 /// `error_estimate` estimates the neglected terms, which are of second order in lambda times the
-/// curvature. `residual` is the gap between the integral of the unit tangents from grip to grip and
-/// the position of the other grip, divided by l. The shape is stable because it is under tension
-/// everywhere: int EI |eta'|^2 + T |eta|^2 ds > 0 for every change eta of the tangent. Other
-/// equilibria are not searched for.
-/// @return std::nullopt for another kind of problem, for a grip that bends the rod by more than 170
-/// deg, and if layers overlap each other or the contact
+/// curvature. `residual` is the gap between the integral of the unit tangents from end to end and
+/// the position of the other end of the rod, divided by l. The shape is stable because it is under
+/// tension everywhere: int EI |eta'|^2 + T |eta|^2 ds > 0 for every change eta of the tangent.
+/// Other equilibria are not searched for.
+/// @return std::nullopt for another kind of problem, for grips above each other, for a grip that
+/// bends the rod by 170 deg or more, if layers overlap each other or the contact, and if `residual`
+/// is larger than `error_estimate`
+/// @throws std::invalid_argument if the problem is out of range
 [[nodiscard]] std::optional<Equilibrium> catenary_limit(const Problem& problem);
 
 /// Returns the shape that solve_energy() and solve_exact() return without a search: taut_line(), or

@@ -14,7 +14,8 @@ namespace dlo::energy_model {
 /// maps the normal to itself. If the first clamp has no d1, it is arbitrary for a round straight
 /// rod; Problem defines it for a rod with material directors.
 /// @throws std::invalid_argument if the grip is no clamp with a frame, or if the two directions are
-/// opposite and along the line from clamp to clamp, so that no plane determines the rotation
+/// opposite and along the line from clamp to clamp, so that no plane determines the rotation; also
+/// as first_frame(), if d1 of a rod with material directors is needed
 [[nodiscard]] Eigen::Vector3d held_d1(const Problem& problem, const Grip& grip);
 
 /// Returns the turns that the frames of two clamps prescribe [-], computed from the grips alone.
@@ -45,7 +46,7 @@ struct HeldTurns {
   double roll = 0;  ///< roll of the end minus roll of the start, whole turns counted [rad]
   /// Result of held_turns() [-]. Empty for an intrinsically curved rod whose later clamp has no d1:
   /// its roll is measured from the rod's shape without this frame, so that a coiled rod stays
-  /// coiled.
+  /// coiled. Also empty if held_turns() is.
   std::optional<double> turns;
 };
 
@@ -60,7 +61,8 @@ struct HeldTurns {
 /// @param frame_angle  angle from the shape's d1 to the prescribed d1 without roll, up to whole
 ///                     turns [rad]
 /// @param twist   twist of the shape [rad]
-/// @param writhe  writhe of the shape; empty: unknown, `frame_angle` is reduced to (-pi, pi]
+/// @param writhe  writhe of the shape. If it or HeldTurns::turns is empty, the result is
+///                `frame_angle` reduced to (-pi, pi] plus HeldTurns::roll
 [[nodiscard]] double end_rotation(const HeldTurns& held, double frame_angle, double twist,
                                   const std::optional<Writhe>& writhe);
 
@@ -85,8 +87,9 @@ struct HeldTurns {
 [[nodiscard]] std::optional<double> writhe_modulo_two(const Eigen::Matrix3Xd& tangents,
                                                       const Eigen::Vector3d& chord);
 
-/// Returns the writhe of a polygon. Its value modulo two is exact, and Gauss's integral (Klenin and
-/// Langowski 2000, method 1a) selects the number of this class. Empty as writhe_modulo_two().
+/// Returns the writhe of a polygon. Its value modulo two is exact. The number of this class is
+/// selected by Fuller's area if all tangents are within 90 deg of the middle of the end tangents,
+/// else by Gauss's integral (Klenin and Langowski 2000, method 1a). Empty as writhe_modulo_two().
 /// @param points  3 x M, M >= 2
 /// @param first, last  unit tangents at the ends
 [[nodiscard]] std::optional<Writhe> writhe(const Eigen::Matrix3Xd& points,
@@ -94,8 +97,8 @@ struct HeldTurns {
                                            const Eigen::Vector3d& last);
 
 /// Returns the writhe of a shape between two arc lengths [m], from polygons with 64, 128, ...
-/// segments until its error is below 1e-7 or 2048 segments are reached. Empty as
-/// writhe_modulo_two().
+/// segments until its error is below 1e-7 and its crossings are known, or until 2048 segments are
+/// reached. Empty as writhe_modulo_two().
 [[nodiscard]] std::optional<Writhe> writhe(
     const std::function<Samples(std::span<const double> arc_lengths)>& sample, double begin,
     double end);

@@ -92,24 +92,27 @@ struct VibrationOptions {
 /// cross-sections have no rotary inertia. Grips do not move, and yielding obstacles act as springs.
 /// Terms are added until omega does not change.
 /// @param known  equilibrium of the same problem; modes of an unstable one have negative squares
-/// @throws std::invalid_argument if the problem, the inertia or an option is out of range. A shape
-/// that touches a rigid obstacle is `failed`: a vibrating rod lifts off, which is not linear
+/// @throws std::invalid_argument if the problem, the inertia or an option is out of range, for
+/// couples and confined_to_plane, and as solve_energy() for grips and loads. A shape that touches a
+/// rigid obstacle is `failed`: a vibrating rod lifts off, which is not linear
 Vibrations vibrations(const Problem& problem, const Inertia& inertia, const Equilibrium& known,
                       const VibrationOptions& options = {});
 
-/// Whether clamps hold a rod straight: each is as far from the next one, along the directions of
-/// both, as the rod between them is long, to rounding. The line is then its only shape, which
-/// solve_energy() returns only if taut_line() applies.
+/// Whether every grip is a clamp and the clamps hold a rod straight: each is as far from the next
+/// one, along the directions of both, as the rod between them is long, to rounding. The line is
+/// then its only shape, which solve_energy() returns only if taut_line() applies.
 [[nodiscard]] bool is_held_straight(const Problem& problem);
 
 /// Computes vibrations() of a rod that is_held_straight(), whose shape does not determine its
 /// tension. To first order a deflection needs no additional length, so that without tension the
 /// modes are those of a beam that is clamped at both ends; with tension w_ssss EI - tension w_ss =
 /// omega^2 m w. An inextensible rod has these modes if compliance of the grips or stretch of the
-/// rod provides the length of the deflection, int w_s^2/2 ds.
+/// rod provides the length of the deflection, int w_s^2/2 ds. VibrationOptions::time_limit is not
+/// used.
 /// @param tension  tension of the rod between its clamps [N]; compression if < 0
 /// @throws std::invalid_argument as vibrations(), and if the rod is not held straight, or if its
-/// weight, a load, natural strains, an obstacle or clamps that hold frames could bend or twist it
+/// weight, a load, natural strains, an obstacle or two clamps that hold frames could bend or twist
+/// it
 Vibrations taut_vibrations(const Problem& problem, const Inertia& inertia, double tension,
                            const VibrationOptions& options = {});
 
