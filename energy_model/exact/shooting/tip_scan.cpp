@@ -14,7 +14,7 @@ namespace {
 
 using std::numbers::pi;
 
-constexpr int most_integrations = 20000;  // maximum number of shots of a scan
+constexpr int most_integrations = 20000;  // number of shots after which no cell is halved
 constexpr int deepest_cell = 6;           // maximum number of halvings of a cell of the scan
 // Allowed error of the cubic in a cell, divided by the residual there.
 constexpr double cell_tolerance = 0.02;

@@ -49,7 +49,7 @@ struct FittedAngle {
 
 /// Fits an angle to values at the nodes of all elements, by least squares on each element.
 /// @param turns  rotation of the end of each element for a coefficient of 1 of p_0 = 1
-///               (Piece::angle())
+///               (Element::angle())
 /// @param start  start value of the angle, if it is prescribed
 [[nodiscard]] FittedAngle fit_angle(const LegendreTable& table, const std::vector<double>& turns,
                                     const Eigen::VectorXd& angles, std::optional<double> start);
