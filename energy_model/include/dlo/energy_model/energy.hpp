@@ -47,8 +47,8 @@ struct EnergyOptions {
 /// reason why there is none. Stability is proven by the second variation. It is proven that no
 /// equilibrium is lower only for one clamp under parallel forces without an obstacle
 /// @throws std::invalid_argument if the problem or an option is out of range, with the numbers; if
-/// grips are as far apart as the rod between them is long; if loads, grips and sections divide the
-/// rod into too many elements
+/// grips are as far apart as the rod between them is long or farther, unless taut_line() applies;
+/// if loads, grips and sections divide the rod into too many elements
 Equilibrium solve_energy(const Problem& problem, const EnergyOptions& options = {});
 
 /// Finds the equilibrium to which a local search from the points of a shape converges. A penalty
@@ -99,7 +99,7 @@ struct EnergySearch {
 
 /// Solver of the energy model with buffers that are reused between solves, for loops. Not
 /// thread-safe. Its functions that take a problem throw std::invalid_argument under the same
-/// conditions as solve_energy().
+/// conditions as solve_energy(), near() also as energy_near().
 class EnergySolver {
  public:
   /// @throws std::invalid_argument if an option is out of range
@@ -121,9 +121,9 @@ class EnergySolver {
   /// obstacles in the same order.
   Equilibrium follow(const Problem& problem);
   /// Follows the branch by Newton's method as follow() does, but does not continue beyond the end
-  /// of the branch. Returns std::nullopt if no stable equilibrium is found near the last shape, or
-  /// if there is no last shape. The next call then starts from the same shape as this one, for
-  /// example with a smaller step.
+  /// of the branch. Returns std::nullopt if no stable equilibrium is found near the last shape, if
+  /// there is no last shape, or if shape_without_search() solves the problem. The next call then
+  /// starts from the same shape as this one, for example with a smaller step.
   std::optional<Equilibrium> try_follow(const Problem& problem);
   /// Discards the shape of the last successful follow() or try_follow(): the next call starts from
   /// the shape before it. At most once for each of them.

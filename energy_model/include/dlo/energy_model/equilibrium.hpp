@@ -40,7 +40,7 @@ struct ContactPart {
   double end = 0;
   Eigen::Vector3d force =
       Eigen::Vector3d::Zero();  ///< resultant force of the obstacle on the rod [N]
-  /// Moment of the contact pressure about the point at `begin` [N m]; zero unless the kind is
+  /// Moment of all forces of this contact about the point at `begin` [N m]; zero unless the kind is
   /// `lying`.
   Eigen::Vector3d moment = Eigen::Vector3d::Zero();
   /// Part of the force that is concentrated at `begin`, if the rod lies [N].
@@ -66,7 +66,8 @@ struct [[nodiscard]] Equilibrium {
   int evaluations = 0;
   int terms = 0;  ///< `energy`: coefficients of each element and strain component; 0 for `exact`
   double seconds = 0;  ///< wall time of the call [s]
-  /// Residual of the equations [-], the largest of all spans.
+  /// Residual of the equations [-], the largest of all spans. It is 0 for taut_line();
+  /// catenary_limit() describes its own.
   /// `energy`: norm of (g - J^T mu, f c), with the gradient g by the coefficients in EI/l, the
   /// constraints c of grips and contact in l and rad, and the scale of the forces f = 1 + load +
   /// |mu| in EI/l^2.

@@ -95,10 +95,11 @@ struct Section {
 /// Two neighbouring clamps with frames fix the sum of twist and writhe between them (held_turns()
 /// in turns.hpp); energy_model/doc/search.md describes how a solver gets there. A rod that
 /// has_material_directors() has d1 and d2 fixed to its material. The first clamp along the rod
-/// holds them: at its FrameHold::d1, or else d2 is the normal of the plane that grips and forces
-/// share, on the side of +z (of +y if the plane contains z, of +x if it contains y and z), so that
-/// a strain u2 > 0 bends the rod to the left; the roll of the clamp is added. Without a clamp the
-/// directors are free to rotate. A later clamp holds them only if it has a frame.
+/// holds them: at its FrameHold::d1, or else d2 is the normal of the plane that grips, weight,
+/// obstacles and, without natural strains, loads share (natural_normal()), on the side of +z (of +y
+/// if the plane contains z, of +x if it contains y and z), so that a strain u2 > 0 bends the rod to
+/// the left; the roll of the clamp is added. Without a clamp the directors are free to rotate. A
+/// later clamp holds them only if it has a frame.
 struct Problem {
   double length = 0;               ///< l [m], > 0
   double bending_stiffness = 0;    ///< EI [N m^2], > 0; about d1 if bending_stiffness_2 is given
@@ -191,10 +192,10 @@ struct Samples {
   Eigen::Matrix3Xd tangents;       ///< unit, along growing arc length [-], 3 x M
   Eigen::Matrix3Xd curvature;      ///< derivative of the tangent by arc length [1/m], 3 x M
   /// First director of the rod's material, unit and across the tangent, 3 x M. It is given for a
-  /// rod that has_material_directors(), by solve_energy() for a round straight rod that clamps
-  /// twist, and by solve_exact() for one with a load that follows it along d1 or d2.
-  /// Clamps that hold a frame have d1 where they hold it. A part whose frame no clamp holds is not
-  /// twisted, and a frame without d1 at the begin is arbitrary. Empty for other rods.
+  /// rod that has_material_directors(), by solve_energy(), simulate() and taut_line() for a round
+  /// straight rod that clamps twist, and by solve_exact() for one with a load that follows it along
+  /// d1 or d2. Clamps that hold a frame have d1 where they hold it. A part whose frame no clamp
+  /// holds is not twisted, and a frame without d1 at the begin is arbitrary. Empty for other rods.
   Eigen::Matrix3Xd d1;
 };
 
