@@ -19,7 +19,8 @@ struct SpanEquilibrium {
   std::string message = "never ran";
   int integrations = 0;  ///< integrations of the whole span, with or without linearisation
   /// Largest gap in r, R, m / f, n / f^2 at a node, where f^2 is the largest of |n|, |m|^2, the
-  /// total load and 1 in the initial guess.
+  /// total load and 1 in the initial guess. From scan_tip() the distance of the unit tangent at the
+  /// clamp from its direction.
   double residual = -1;
   Eigen::VectorXd s;  ///< arc lengths of the nodes: grips, loads and others between them
   /// Cross-sections at the nodes; m and n are those just after the node.

@@ -37,8 +37,8 @@ struct MovingRod {
 };
 
 /// Shape from which the motion begins, as a function that returns samples at arc lengths; only its
-/// tangents are used. Equilibrium::sample is one. The grips have to hold it approximately: it is
-/// moved to the positions at which they do.
+/// tangents are used, and its d1 if twist is simulated. Equilibrium::sample is one. The grips have
+/// to hold it approximately: it is moved to the positions at which they do.
 using StartingShape = std::function<Samples(std::span<const double>)>;
 
 /// Velocities of the rod's points at M arc lengths, 3 x M [m/s].

@@ -32,8 +32,9 @@ struct EnergyOptions {
   double time_limit = std::numeric_limits<double>::infinity();
   /// Known equilibrium of a similar problem with the same length and clamps, from which the solver
   /// starts instead of a search. The solver follows its branch, so that a snap-through shows where
-  /// the branch ends. It has to outlive the call. If clamps twist the rod, its `twists` hold the
-  /// twist angle of each part.
+  /// the branch ends. If no equilibrium is found from it, a search follows. search_energy() and
+  /// all_energy() do not use it. It has to outlive the call. If clamps twist the rod, its `twists`
+  /// hold the twist angle of each part.
   const Equilibrium* start = nullptr;
 };
 

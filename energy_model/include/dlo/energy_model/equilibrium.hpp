@@ -82,13 +82,14 @@ struct [[nodiscard]] Equilibrium {
   /// always except for a shape of shape_without_search().
   double error_estimate = std::numeric_limits<double>::quiet_NaN();
   /// Smallest eigenvalue of the second variation in the directions that the grips leave free, out
-  /// of the plane of a planar shape too; negative: unstable. `energy`: eigenvalue of the reduced
-  /// Hessian over EI/l, in the norm of the bending energy. `exact`: relative to int |eta'|^2 +
-  /// |eta|^2 ds, where eta is the change of the tangent (with material directors: the spin) and
-  /// lengths are in l. NaN: unknown. It is unknown for a shape of shape_without_search(), and for
-  /// `exact` if the loads have no potential. It may be unknown for `energy` if the rod has a free
-  /// end whose part from the nearest grip, a clamp, is uniform, straight and round and lies in a
-  /// plane under parallel forces, because the stability of such a part is proven without it.
+  /// of the plane of a planar shape too unless couples act or the rod is confined_to_plane;
+  /// negative: unstable. `energy`: eigenvalue of the reduced Hessian over EI/l, in the norm of the
+  /// bending energy. `exact`: relative to int |eta'|^2 + |eta|^2 ds, where eta is the change of the
+  /// tangent (with material directors: the spin) and lengths are in l. NaN: unknown. It is unknown
+  /// for a shape of shape_without_search(), and for `exact` if the loads have no potential. It may
+  /// be unknown for `energy` if the rod has a free end whose part from the nearest grip, a clamp,
+  /// is uniform, straight and round and lies in a plane under parallel forces, because the
+  /// stability of such a part is proven without it.
   double smallest_eigenvalue = std::numeric_limits<double>::quiet_NaN();
   /// `energy`, if `near_singular`: number of eigenvalues that are zero to the tolerance. Each is a
   /// direction in which a fold or a bifurcation leaves the shape undetermined. It is 0 if only the

@@ -39,8 +39,10 @@ struct ExactOptions {
 /// loads.
 /// @return the lowest `converged` shape, else the lowest other one, else the reason why there is
 /// none. Its stability is that of the second variation by finite elements on its own shape
-/// @throws std::invalid_argument if the problem or an option is out of range. Also for obstacles
-/// without a start, for yielding obstacles, for obstacles together with natural strains, couples,
+/// @throws std::invalid_argument if the problem or an option is out of range. Also for weight and
+/// loads above 1e6 EI/l^2, for grips as far apart as the rod between them is long unless it
+/// stretches or is a taut_line(), for obstacles without a start or with one whose contacts are not
+/// supported, for yielding obstacles, for obstacles together with natural strains, couples,
 /// axial_stiffness or a line load that varies along the rod, for axial_stiffness with loads that
 /// have no potential, for confined_to_plane, for a clamp without a frame between two that hold
 /// frames of a round straight rod, and, if a load has no potential, for obstacles, a load that

@@ -5,8 +5,10 @@ namespace dlo::energy_model {
 /// Outcome of a solver. All but `converged` and `roundoff_limited` are failures. The default of
 /// every result is `not_run`.
 enum class SolveStatus {
-  not_run,    ///< the solver was not called
-  converged,  ///< an equilibrium; the second variation of the returned shape is positive
+  not_run,  ///< the solver was not called
+  /// An equilibrium; the second variation of the returned shape is positive, except for zero modes
+  /// that the message states.
+  converged,
   /// Like `converged`, to the accuracy that double precision allows; the shape is usable.
   roundoff_limited,
   saddle,            ///< an equilibrium, but the second variation has a negative direction
