@@ -124,7 +124,8 @@ struct Span {
   [[nodiscard]] Eigen::Vector3d weight_between(double from, double to) const;
   /// Returns the weight per length outside parts, plus the mean of the line loads.
   [[nodiscard]] Eigen::Vector3d mean_weight() const;
-  /// Returns the sum of the norms of weight and loads, as a scale.
+  /// Returns the sum of the norms of weight and loads, as a scale. A couple counts divided by the
+  /// length.
   [[nodiscard]] double total_load() const;
   /// Returns the force of weight and loads on the rod from its start to s.
   [[nodiscard]] Eigen::Vector3d force_before(double s) const;
@@ -136,7 +137,7 @@ struct Span {
   /// Whether shapes out of the plane are excluded, because the rod is confined or couples have no
   /// potential there.
   [[nodiscard]] bool stays_in_plane() const { return planar && (confined || has_couples()); }
-  /// Whether weight and loads all point in the same direction.
+  /// Whether weight and loads all point in the same direction; false with couples.
   [[nodiscard]] bool has_unidirectional_load() const;
   /// Whether this is a uniform straight rod in a plane with one clamp, loaded by nothing but weight
   /// and point forces. Such spans are solved and certified by separate methods, so a new kind of
