@@ -33,7 +33,7 @@ struct Imbalance {
   double largest_moment = 0;
 
   /// Returns force / largest_force or moment / largest_moment, whichever is larger [-]; NaN if an
-  /// action contains NaN or both divisors are 0.
+  /// action contains NaN or largest_moment is 0.
   [[nodiscard]] double share() const;
   /// Returns a text with both sums and their shares of the largest force and moment.
   [[nodiscard]] std::string text() const;

@@ -79,7 +79,7 @@ struct SearchStrategy {
 /// used. A search does not prove that there are no other equilibria.
 struct EnergySearch {
   /// Stable equilibria first, by energy. Unstable ones have the status `saddle`, those at a fold or
-  /// bifurcation `near_singular`. Never empty.
+  /// bifurcation `near_singular`. Never empty: if none is found, the result with the reason.
   std::vector<Equilibrium> equilibria;
   /// Kinds of initial guess in the order of their first use. Each span counts separately; the
   /// equilibria of the spans are combined to those of the rod.

@@ -35,8 +35,8 @@ struct Writhe {
   /// of tangents divided by 2 pi. It determines the homotopy class of the frames along the curve,
   /// even if the curve intersects itself.
   double modulo_two = 0;
-  /// Writhe. Empty if the curve or a line beyond its ends passes through the curve: a passage
-  /// changes the writhe by two.
+  /// Writhe. Empty if the curve or a line beyond its ends passes through the curve or too close to
+  /// it: a passage changes the writhe by two.
   std::optional<double> value;
   double error = 0;  ///< estimated error of both values [-]
 };
