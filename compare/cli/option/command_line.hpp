@@ -65,19 +65,17 @@ class Command {
     if constexpr (std::is_enum_v<Element>) {
       choices = compare::names<Element>();
       meanings = compare::meanings<Element>();
-      option = app_.add_option_function<Names>(names, [&value](const Names& given) {
-        value = Value{};
-        for (const std::string& text : given) {
-          const auto one = compare::from_name<Element>(text);
-          if constexpr (requires { value.push_back(one); }) {
-            value.push_back(one);
-          } else {
-            value = one;
-          }
-        }
-      });
+      if constexpr (requires { value.push_back(Element{}); }) {
+        option = app_.add_option_function<Names>(names, [&value](const Names& given) {
+          value.clear();
+          for (const std::string& text : given) value.push_back(compare::from_name<Element>(text));
+        });
+      } else {
+        option = app_.add_option_function<std::string>(names, [&value](const std::string& given) {
+          value = compare::from_name<Element>(given);
+        });
+      }
       if constexpr (std::is_enum_v<Value>) option->default_str(compare::to_string(value));
-      if constexpr (!requires { value.size(); }) option->expected(1);
     } else if constexpr (std::is_same_v<Value, bool>) {
       option = app_.add_flag(names, value);
     } else if (names.find('{') != std::string::npos) {

@@ -60,7 +60,7 @@ TEST_F(SceneOptions, OfTheStepperMeanTheirKeys) {
   const std::string file = scene(short_rod);
   expect_error("solve " + file + " --model force --stepper dynamic --c-F 4e-5 --c-h 1", 2,
                {"--c-h: 1: out of range", "0 <= value < 1"});
-  expect_error("solve " + file + " --law paper --c-b -3", 2, {"--c-b = -3", "> 0"});
+  expect_error("solve " + file + " --law paper --c-b -3", 2, {"--c-b: -3", "> 0"});
   expect_error("solve " + file + " --model force --c-h 0.9", 2, {"c_h", "stepper dynamic"});
 }
 
