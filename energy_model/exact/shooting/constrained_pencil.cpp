@@ -64,7 +64,8 @@ EigenvalueBracket bracket_smallest(const ConstrainedPencil& pencil) {
 
 }  // namespace
 
-SmallestMode smallest_mode(const ConstrainedPencil& pencil) {
+SmallestMode smallest_mode(const ConstrainedPencil& pencil,
+                           const std::function<double(const Eigen::VectorXd&)>& quotient) {
   SmallestMode result;
   result.negative = count_below(pencil, -neutral_eigenvalue);
   const int not_positive = count_below(pencil, neutral_eigenvalue);
@@ -85,7 +86,7 @@ SmallestMode smallest_mode(const ConstrainedPencil& pencil) {
     x /= std::sqrt(x.dot(pencil.norm * x));
   }
   if (!x.allFinite()) return result;
-  const double value = x.dot(pencil.second * x);
+  const double value = quotient(x);
   if (value >= bracket.low && value <= bracket.high) result.smallest = value;
   result.x = x;
   return result;

@@ -2,6 +2,7 @@
 
 #include <Eigen/Core>
 #include <Eigen/SparseCore>
+#include <functional>
 #include <limits>
 
 namespace dlo::energy_model {
@@ -39,6 +40,9 @@ struct SmallestMode {
 };
 
 /// Computes the smallest eigenvalue of a pencil.
-[[nodiscard]] SmallestMode smallest_mode(const ConstrainedPencil& pencil);
+/// @param quotient  returns the value of the second variation for a vector of norm 1; of K + C^T
+///                  D^-1 C if D does not tend to 0
+[[nodiscard]] SmallestMode smallest_mode(
+    const ConstrainedPencil& pencil, const std::function<double(const Eigen::VectorXd&)>& quotient);
 
 }  // namespace dlo::energy_model

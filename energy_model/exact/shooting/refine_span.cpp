@@ -1,6 +1,5 @@
 #include <algorithm>
 #include <cmath>
-#include <optional>
 #include <utility>
 
 #include "base/require.hpp"
@@ -15,27 +14,94 @@ namespace {
 constexpr double largest_force = 1e6;  // largest force over b that the first mesh resolves
 // Component of the tangents normal to the plane up to which a shape is treated as planar.
 constexpr double start_plane_tolerance = 1e-6;
-// Difference of equal arc lengths [l].
-constexpr double same_arc_length = 1e-9;
-// Distance before and behind a point over which the rotation of d1 is measured [l].
-constexpr double twist_step = 1e-4;
 
-/// Returns the torque of the part of a shape that is twisted at an arc length (over l) [EI/l];
-/// std::nullopt if it is not twisted there.
-std::optional<double> torque_at(const Problem& problem, const Equilibrium& shape, double s) {
-  const double at = s * problem.length;
-  for (const TwistedPart& part : shape.twists) {
-    if (part.begin < at && at < part.end) {
-      return part.torque * problem.length / bending_unit(problem);
-    }
-  }
-  return std::nullopt;
+/// Returns the twist that a shape has for a span whose clamps hold frames; null if it has none.
+const TwistedPart* twist_of(const RodSpan& span, const Problem& problem, const Equilibrium& shape) {
+  if (!span.twisted()) return nullptr;
+  const double middle = (span.begin + span.length / 2) * problem.length;
+  const auto found = std::find_if(shape.twists.begin(), shape.twists.end(), [&](const auto& part) {
+    return part.begin < middle && middle < part.end;
+  });
+  return found == shape.twists.end() ? nullptr : &*found;
 }
 
-/// Returns the force of the part beyond the arc length s (over l) on the part before, just after s,
-/// that the actions of a shape's grips and contacts imply [EI/l^2].
+Samples sample_at(const RodSpan& span, const Problem& problem, const Equilibrium& shape,
+                  const Eigen::VectorXd& s) {
+  std::vector<double> arc_lengths;
+  for (const double at : s) {
+    arc_lengths.push_back(std::min((span.begin + at) * problem.length, problem.length));
+  }
+  // At a clamp the curvature jumps; the value on this side is required.
+  constexpr double one_sided_offset = 1e-12;
+  if (span.begin > 0) arc_lengths.front() += one_sided_offset * problem.length;
+  return shape.sample(arc_lengths);
+}
+
+/// Returns states of a round rod: the moment is computed from the curvature and a torque.
+std::vector<RodState> states_by_curvature(const RodSpan& span, const Problem& problem,
+                                          const Equilibrium& shape, const RodMesh& mesh,
+                                          double torque) {
+  const Samples samples = sample_at(span, problem, shape, mesh.s);
+  std::vector<RodState> states;
+  for (Eigen::Index i = 0; i < mesh.s.size(); ++i) {
+    RodState state;
+    const Eigen::Vector3d t = samples.tangents.col(i);
+    state.r = (samples.points.col(i) - problem.grips.front().position) / problem.length;
+    state.R = frame_along(t, t.unitOrthogonal());
+    if (i < mesh.intervals()) {
+      const Eigen::Vector3d curvature = samples.curvature.col(i) * problem.length;
+      state.m = mesh.section_of(i).bending * t.cross(curvature) + torque * t;
+      state.n = implied_force(problem, shape, span.begin + mesh.s[i]);
+    }
+    states.push_back(state);
+  }
+  return states;
+}
+
+/// Returns states of a whole rod: the moment is the sum of the actions of its grips.
+std::vector<RodState> states_by_balance(const RodSpan& span, const Problem& problem,
+                                        const Equilibrium& shape, const RodMesh& mesh) {
+  constexpr Eigen::Index parts_per_interval =
+      8;  // parts per interval for the integration of moments
+  const Eigen::Index count = parts_per_interval * mesh.intervals();
+  Eigen::VectorXd s(count + 1);
+  for (Eigen::Index k = 0; k <= count; ++k) {
+    const Eigen::Index i = std::min(k / parts_per_interval, mesh.intervals() - 1);
+    s[k] = mesh.s[i] +
+           mesh.width(i) * static_cast<double>(k - parts_per_interval * i) / parts_per_interval;
+  }
+  const Samples samples = sample_at(span, problem, shape, s);
+  const double torque_unit = bending_unit(problem) / problem.length;
+  const Eigen::Matrix3Xd r =
+      (samples.points.colwise() - problem.grips.front().position) / problem.length;
+  std::vector<RodState> states(static_cast<std::size_t>(mesh.s.size()));
+  Eigen::Vector3d m = Eigen::Vector3d::Zero();
+  for (Eigen::Index k = count; k >= 0; --k) {
+    if (k % parts_per_interval == 0) {
+      RodState& state = states[static_cast<std::size_t>(k / parts_per_interval)];
+      const Eigen::Vector3d t = samples.tangents.col(k).normalized();
+      state.r = r.col(k);
+      state.R =
+          frame_along(t, samples.d1.cols() > 0 ? samples.d1.col(k).eval() : t.unitOrthogonal());
+      state.m = m;
+      if (k < count) state.n = implied_force(problem, shape, s[k]);
+      for (const RodSpan::Hold& hold : span.holds) {
+        if (hold.at == s[k]) m += shape.grips[hold.grip].torque / torque_unit;
+      }
+      m += mesh.couple.col(k / parts_per_interval) +
+           state.R * mesh.follower_couple.col(k / parts_per_interval);
+    }
+    if (k == 0) break;
+    m -= implied_force(problem, shape, (s[k - 1] + s[k]) / 2)
+             .cross(Eigen::Vector3d(r.col(k) - r.col(k - 1)));
+  }
+  return states;
+}
+
+}  // namespace
+
 Eigen::Vector3d implied_force(const Problem& problem, const Equilibrium& shape, double s) {
-  const double at = (s + same_arc_length) * problem.length;
+  const double at = s * problem.length * (1 + 1e-12);
   Eigen::Vector3d n = Eigen::Vector3d::Zero();
   for (const RodPart& part : rod_parts(problem)) {
     const double on = std::max(0.0, std::min(part.end, s * problem.length) - part.begin);
@@ -47,59 +113,7 @@ Eigen::Vector3d implied_force(const Problem& problem, const Equilibrium& shape, 
   for (const Load& load : problem.loads) {
     if (load.at <= at) n -= load.force;
   }
-  for (const ContactPart& part : shape.contacts) {
-    if (part.end <= at) n -= part.force;
-  }
   return n * problem.length * problem.length / bending_unit(problem);
-}
-
-}  // namespace
-
-std::vector<RodState> states_of(const RodSpan& span, const RodMesh& mesh, const Problem& problem,
-                                const Equilibrium& shape, double behind, double tolerance) {
-  const auto place = [&](double s, double offset) {
-    return std::clamp(span.begin + s + offset, 0.0, 1.0);
-  };
-  const auto sample_at = [&](double offset) {
-    std::vector<double> at;
-    for (const double s : mesh.s) at.push_back(place(s, offset) * problem.length);
-    return shape.sample(at);
-  };
-  const Samples here = sample_at(behind);
-  const bool has_d1 = !span.round() && here.d1.cols() > 0;
-  std::vector<RodState> states(static_cast<std::size_t>(mesh.s.size()));
-  for (Eigen::Index i = 0; i < mesh.s.size(); ++i) {
-    RodState& state = states[static_cast<std::size_t>(i)];
-    const Eigen::Vector3d t = here.tangents.col(i).normalized();
-    state.r = (here.points.col(i) - problem.grips.front().position) / problem.length;
-    state.R = frame_along(t, has_d1 ? Eigen::Vector3d(here.d1.col(i)) : t.unitOrthogonal());
-    if (i == mesh.intervals()) break;
-    const double s = span.begin + mesh.s[i];
-    const Eigen::Vector3d curvature = problem.length * here.curvature.col(i);
-    state.m = mesh.section_of(i).bending * t.cross(curvature) +
-              torque_at(problem, shape, s + behind).value_or(0) * t;
-    state.n = implied_force(problem, shape, s);
-  }
-  if (!has_d1) carry_frames(span, mesh, tolerance, states);
-  if (span.round()) return states;
-  const Samples before = has_d1 ? sample_at(-twist_step) : here;
-  const Samples after = has_d1 ? sample_at(twist_step) : here;
-  for (Eigen::Index i = 0; i < mesh.intervals(); ++i) {
-    RodState& state = states[static_cast<std::size_t>(i)];
-    const RodSection& section = mesh.section_of(i);
-    const double s = mesh.s[i];
-    const Eigen::Vector3d curvature = problem.length * here.curvature.col(i);
-    Eigen::Vector3d u(-curvature.dot(state.R.col(1)), curvature.dot(state.R.col(0)), 0);
-    if (span.natural) u -= section.natural(span.natural, s);
-    u.z() = state.m.dot(state.t()) / section.torsion;
-    if (has_d1) {
-      const double width = place(s, twist_step) - place(s, -twist_step);
-      u.z() = (after.d1.col(i) - before.d1.col(i)).dot(state.R.col(1)) / width;
-      if (span.natural) u.z() -= section.natural(span.natural, s).z();
-    }
-    state.m = state.R * section.stiffness().cwiseProduct(u);
-  }
-  return states;
 }
 
 SpanEquilibrium refine_span(const RodSpan& span, const Problem& problem, const Equilibrium& shape,
@@ -114,18 +128,24 @@ SpanEquilibrium refine_span(const RodSpan& span, const Problem& problem, const E
   for (const Reaction& grip : shape.grips) {
     force = std::max(force, grip.force.norm() * problem.length / torque_unit / b);
   }
-  const std::optional<double> torque =
-      span.twisted() ? torque_at(problem, shape, span.begin + span.length / 2) : std::nullopt;
-  if (span.round()) force = std::max(force, std::pow(torque.value_or(0) / b, 2));
+  const TwistedPart* twisted = twist_of(span, problem, shape);
+  const double torque = twisted == nullptr ? 0 : twisted->torque / torque_unit;
+  if (span.round()) force = std::max(force, torque * torque / (b * b));
   const RodMesh mesh = make_mesh(span, resolving_interval(span, std::min(force, largest_force)));
-  constexpr double behind = 1e-12;
-  std::vector<RodState> start = states_of(span, mesh, problem, shape, behind, tolerance);
+  std::vector<RodState> start = span.round()
+                                    ? states_by_curvature(span, problem, shape, mesh, torque)
+                                    : states_by_balance(span, problem, shape, mesh);
   ShootingOptions options{.tolerance = tolerance, .deadline = deadline};
-  if (!span.round() || torque) {
+  const std::vector<double> begin = {0};
+  if (span.round() || shape.sample(begin).d1.cols() == 0) {
+    carry_frames(span, mesh, tolerance, start);
+  }
+  if (!span.round() || twisted != nullptr) {
     return shoot_span(span, mesh, std::move(start), held_frames(span), options);
   }
   const RodSpan released = without_frames(span);
-  if (out_of_plane(span, start) < start_plane_tolerance) options.motion = Motion::in_plane;
+  if (span.round() && out_of_plane(span, start) < start_plane_tolerance)
+    options.motion = Motion::in_plane;
   SpanEquilibrium equilibrium = shoot_span(released, mesh_at(released, mesh.s), std::move(start),
                                            released_frames(released), options);
   return span.twisted() ? twist_span(span, equilibrium, tolerance, deadline) : equilibrium;

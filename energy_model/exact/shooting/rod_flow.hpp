@@ -19,13 +19,22 @@ namespace dlo::energy_model {
 [[nodiscard]] Eigen::Vector3d curvature_of(const RodSection& section, const NaturalStrain& natural,
                                            double s, const RodState& state);
 
+/// Returns the stiffness in the axes of space, R K R^T.
+[[nodiscard]] Eigen::Matrix3d stiffness_of(const RodSection& section, const Eigen::Matrix3d& R);
+
 /// Returns the tangents of states, 3 x states.
 [[nodiscard]] Eigen::Matrix3Xd tangents_of(const std::vector<RodState>& states);
 [[nodiscard]] std::vector<Eigen::Matrix3d> frames_of(const std::vector<RodState>& states);
 
-/// Derivatives of a RodState, one per column. Rows: r, the spin of R (dR = spin x R), m and n,
-/// three each.
-using RodVariation = Eigen::Matrix<double, 12, Eigen::Dynamic>;
+/// Derivatives of a RodState by parameters, one per column.
+struct RodVariation {
+  Eigen::Matrix3Xd r;
+  Eigen::Matrix3Xd spin;  ///< spin of R: dR = spin x R
+  Eigen::Matrix3Xd m;
+  Eigen::Matrix3Xd n;
+
+  explicit RodVariation(Eigen::Index parameters = 0);
+};
 
 /// Integrals over a piece of the rod.
 struct RodIntegrals {
@@ -50,8 +59,14 @@ struct RodElement {
 [[nodiscard]] RodElement rod_element(const RodSpan& span, const RodMesh& mesh,
                                      Eigen::Index interval);
 
-/// Returns the derivatives of a cross-section by the arc length at the begin of a piece.
-[[nodiscard]] Eigen::Matrix<double, 12, 1> rate_of(const RodElement& piece, const RodState& state);
+/// Derivatives of a cross-section by the arc length at the begin of a piece.
+struct RodRate {
+  Eigen::Vector3d r;
+  Eigen::Vector3d spin;  ///< spin of R: R' = spin x R
+  Eigen::Vector3d m;
+  Eigen::Vector3d n;
+};
+[[nodiscard]] RodRate rate_of(const RodElement& piece, const RodState& state);
 
 /// Integrates the rod's equations over a piece,
 ///     r' = t,   R' = R hat(u),   m' = n x t,   n' = -w - f(t), and -w - p N where it lies,
@@ -63,11 +78,14 @@ struct RodElement {
 /// Rotations are integrated as nine matrix components; a parametrisation by angles would have
 /// singularities.
 /// @param tolerance  local error per step, relative to 1 + |component|
-/// @param[in,out] state, variation  from the begin of the piece to its end; no variation if null
-/// @param[out] integrals  integrals over the piece; not returned if null
+/// @param[in,out] state, variation  from the begin of the piece to its end
+/// @param[out] integrals  of the piece
 /// @return false if the integrator failed
 [[nodiscard]] bool integrate_rod(const RodElement& piece, double tolerance, RodState& state,
-                                 RodVariation* variation = nullptr,
-                                 RodIntegrals* integrals = nullptr);
+                                 RodVariation& variation, RodIntegrals& integrals);
+
+/// Integrates the rod's equations over a piece without linearisation.
+[[nodiscard]] bool integrate_rod(const RodElement& piece, double tolerance, RodState& state,
+                                 RodIntegrals& integrals);
 
 }  // namespace dlo::energy_model

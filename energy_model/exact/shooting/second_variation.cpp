@@ -196,8 +196,7 @@ class VariationProblem {
     for (std::size_t q = 0; q < element_quadrature; ++q) {
       const RodState& state = inside[static_cast<std::size_t>(e) * element_quadrature + q];
       const double weight = h / 2 * element_weight[q];
-      const Eigen::Matrix3d stiffness =
-          state.R * section.stiffness().asDiagonal() * state.R.transpose();
+      const Eigen::Matrix3d stiffness = stiffness_of(section, state.R);
       const Eigen::Matrix3d moment = cross_matrix(state.m);
       const Eigen::Matrix3d outer = state.n * state.t().transpose();
       Eigen::Matrix3d force =
@@ -379,7 +378,9 @@ SecondVariation second_variation(const RodSpan& span, const RodMesh& mesh,
   const VariationProblem variations(span, mesh, frames, force, states);
   SecondVariation result;
   if (!variations.finite()) return result;
-  const SmallestMode mode = smallest_mode(variations.pencil());
+  const ConstrainedPencil pencil = variations.pencil();
+  const SmallestMode mode =
+      smallest_mode(pencil, [&](const Eigen::VectorXd& x) { return x.dot(pencil.second * x); });
   result.negative = mode.negative;
   result.neutral = mode.neutral;
   result.smallest = mode.smallest;

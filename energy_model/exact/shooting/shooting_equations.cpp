@@ -77,75 +77,76 @@ struct ShootingSystem::Rows {
     }
     row += value.size();
   }
-
-  /// Adds combinations of the twelve components of a difference of states, or of its units.
-  /// @param blocks  derivatives of the difference
-  void add(const Combinations& combinations, const Difference& difference,
-           const std::vector<Block>& blocks) {
-    std::vector<Block> combined;
-    if (derivatives != nullptr) {
-      for (const auto& [column, values] : blocks)
-        combined.push_back({column, combinations * values});
-    }
-    add(combinations * difference, combined);
-  }
 };
-
-/// Returns combinations of three components of a difference of states.
-/// @param first  0: r, 3: rotation, 6: m, 9: n
-ShootingSystem::Combinations ShootingSystem::combine(Eigen::Index first,
-                                                     const Eigen::MatrixX3d& rows) {
-  Combinations result = Combinations::Zero(rows.rows(), 12);
-  result.middleCols<3>(first) = rows;
-  return result;
-}
 
 bool ShootingSystem::evaluate(const ShootingPoint& point, Eigen::VectorXd& equations,
                               Triplets* derivatives) const {
+  const std::vector<RodState>& nodes = point.nodes;
   Rows rows{Eigen::VectorXd(equations_), derivatives, 0};
-  node_equations(point, 0, {}, {}, rows);
+  start_equations(point, rows);
   for (Eigen::Index i = 0; i < mesh_.intervals(); ++i) {
     if (out_of_time() || !interval_equations(point, i, rows)) return false;
   }
   // At the last node n and m are zero. Where a clamp holds the end, its conditions have replaced
   // the continuity of n and m there.
-  Difference last = Difference::Zero();
-  last.tail<6>() << point.nodes.back().m, point.nodes.back().n;
-  const std::vector<Block> by_last = {{mesh_.intervals() * unknowns_per_node(), basis_}};
-  rows.add(combine(9, positions_.transpose() / (rate_ * rate_)), last, by_last);
-  rows.add(combine(6, turns_.transpose() / rate_), last, by_last);
+  const Eigen::Index last = mesh_.intervals() * unknowns_per_node();
+  const auto one = [](Eigen::Index size) { return Eigen::MatrixXd::Identity(size, size); };
+  rows.add(positions_.transpose() * nodes.back().n / (rate_ * rate_),
+           {{last + n_index(), one(positions_.cols())}});
+  rows.add(turns_.transpose() * nodes.back().m / rate_, {{last + m_index(), one(turns_.cols())}});
   equations = std::move(rows.values);
   return equations.allFinite();
 }
 
-Eigen::MatrixX3d ShootingSystem::frame_equations(const RodState& node, Eigen::Index i,
+Eigen::Matrix3Xd ShootingSystem::frame_equations(const RodState& node, Eigen::Index i,
                                                  Rows& rows) const {
   const auto index = static_cast<std::size_t>(i);
-  const Eigen::Index column = i * unknowns_per_node();
-  const bool planar = turns_.cols() == 1;
-  const auto add = [&](const Eigen::VectorXd& value, const Eigen::MatrixX3d& by_spin) {
-    rows.add(value, {{column, by_spin * basis_.middleRows<3>(3)}});
-  };
-  const RodSpan::Clamp* clamp = clamps_[index];
-  if (clamp == nullptr) {
-    if (i > 0 || planar || !span_.clamps.empty() || !span_.round()) return turns_.transpose();
-    const Eigen::Vector3d& t = start_.front().t();
-    const Eigen::Vector3d rotation = rotation_between(start_.front().R, node.R);
-    add(t.transpose() * rotation, t.transpose() * rotation_rate(rotation));
-    return axes_across(t).transpose();
-  }
-  if (frames_[index] && !planar) {
+  const Eigen::Index column = i * unknowns_per_node() + spin_index();
+  if (frames_[index] && turns_.cols() == 3) {
     const Eigen::Vector3d rotation = rotation_between(*frames_[index], node.R);
-    add(rotation, rotation_rate(rotation));
-    return Eigen::MatrixX3d(0, 3);
+    rows.add(rotation, {{column, rotation_rate(rotation)}});
+    return turns_;
   }
-  const Eigen::Vector3d& direction = clamp->direction;
-  const Eigen::Vector3d normal = turns_.col(0);
-  const Eigen::MatrixX3d across = planar ? Eigen::MatrixX3d(normal.cross(direction).transpose())
-                                         : Eigen::MatrixX3d(axes_across(direction).transpose());
-  // d(b . t) = b . (spin x t)
-  add(across * node.t(), -across * cross_matrix(node.t()));
-  return planar ? Eigen::MatrixX3d(0, 3) : Eigen::MatrixX3d(direction.transpose());
+  if (clamps_[index] == nullptr) {
+    Eigen::Matrix3Xd none(3, 0);
+    return none;
+  }
+  const Eigen::Vector3d& direction = clamps_[index]->direction;
+  Eigen::Matrix3Xd across = axes_across(direction);
+  if (turns_.cols() == 1) across = Eigen::Vector3d(turns_.col(0)).cross(direction);
+  // d(b . t) = b . (spin x t) = (t x b) . spin
+  Eigen::Matrix3Xd rate(3, across.cols());
+  for (Eigen::Index k = 0; k < across.cols(); ++k) {
+    rate.col(k) = node.t().cross(Eigen::Vector3d(across.col(k)));
+  }
+  rows.add(across.transpose() * node.t(), {{column, rate.transpose() * turns_}});
+  return turns_.cols() == 1 ? turns_ : across;
+}
+
+/// Force that a contact subtracts from n, and its derivatives.
+struct ShootingSystem::ContactForceTerm {
+  Eigen::Vector3d force = Eigen::Vector3d::Zero();
+  std::vector<Block> by;  // derivatives of the force in its unit
+
+  /// Returns the blocks of the balance of forces together with those of this force.
+  [[nodiscard]] std::vector<Block> with(std::vector<Block> blocks) const {
+    blocks.insert(blocks.end(), by.begin(), by.end());
+    return blocks;
+  }
+};
+
+ShootingSystem::ContactForceTerm ShootingSystem::contact_force_at(const ShootingPoint& point,
+                                                                  Eigen::Index i) const {
+  ContactForceTerm push;
+  const RodContact* contact = contact_at(i);
+  if (contact == nullptr) return push;
+  const auto index = static_cast<std::size_t>(contacts_[static_cast<std::size_t>(i)]);
+  const obstacle::Gap gap = contact->gap(point.nodes[static_cast<std::size_t>(i)].r);
+  push.force = point.forces[index] * gap.gradient;
+  push.by = {{force_[index], -positions_.transpose() * gap.gradient},
+             {i * unknowns_per_node(), -point.forces[index] / (rate_ * rate_) *
+                                           (positions_.transpose() * gap.hessian * positions_)}};
+  return push;
 }
 
 void ShootingSystem::contact_equations(const RodState& node, Eigen::Index i, Rows& rows) const {
@@ -154,60 +155,64 @@ void ShootingSystem::contact_equations(const RodState& node, Eigen::Index i, Row
   if (contact != nullptr && contact->touched) {
     const obstacle::Gap gap = contact->gap(node.r);
     rows.add(Eigen::VectorXd::Constant(1, gap.value),
-             {{column, gap.gradient.transpose() * basis_.topRows<3>()}});
+             {{column, gap.gradient.transpose() * positions_}});
     if (contact->is_position_unknown) {
       rows.add(Eigen::VectorXd::Constant(1, gap.gradient.dot(node.t())),
-               {{column, (gap.hessian * node.t()).transpose() * basis_.topRows<3>() +
-                             node.t().cross(gap.gradient).transpose() * basis_.middleRows<3>(3)}});
+               {{column, (gap.hessian * node.t()).transpose() * positions_},
+                {column + spin_index(), node.t().cross(gap.gradient).transpose() * turns_}});
     }
   }
   const Surface* surface = i < mesh_.intervals() ? mesh_.contacts.surface_of(i) : nullptr;
   if (surface == nullptr || (i > 0 && mesh_.contacts.surface_of(i - 1) != nullptr)) return;
   const LyingConditions lying = lying_conditions(*surface, mesh_.section_of(i), node);
   const Eigen::Vector4d unit(1, 1, 1 / rate_, 1 / (rate_ * rate_));
+  const ByState by = unit.asDiagonal() * lying.by_state;
   rows.add(unit.cwiseProduct(lying.values),
-           {{column, unit.asDiagonal() * lying.by_state * basis_}});
+           {{column, by.leftCols<3>() * positions_},
+            {column + spin_index(), by.middleCols<3>(3) * turns_},
+            {column + m_index(), rate_ * by.middleCols<3>(6) * turns_},
+            {column + n_index(), rate_ * rate_ * by.rightCols<3>() * positions_}});
 }
 
-void ShootingSystem::node_equations(const ShootingPoint& point, Eigen::Index i,
-                                    const RodState& before, std::vector<Block> by_before,
-                                    Rows& rows) const {
-  const RodState& node = point.nodes[static_cast<std::size_t>(i)];
-  const Eigen::Index column = i * unknowns_per_node();
-  contact_equations(node, i, rows);
-  const auto [follows, follows_by_spin] = rotated_load(node, mesh_.follower_load.col(i));
-  const auto [couple, couple_by_spin] = rotated_load(node, mesh_.follower_couple.col(i));
-  // Jump of the moment by pulls on the tangent and d1: m = ... - t x q.
-  const auto [jump, jump_by_spin] =
-      jump_of_moment(node, mesh_.tangent_force.col(i), mesh_.d1_force.col(i));
-  Difference difference = Difference::Zero();
-  difference.segment<3>(6) = before.m - mesh_.couple.col(i) - couple - jump - node.m;
-  difference.tail<3>() = before.n - mesh_.load.col(i) - follows - node.n;
-  Eigen::Matrix<double, 12, 12> by_node = Eigen::Matrix<double, 12, 12>::Zero();
-  by_node.bottomRightCorner<6, 6>() = -Eigen::Matrix<double, 6, 6>::Identity();
-  by_node.block<3, 3>(6, 3) = -couple_by_spin - jump_by_spin;
-  by_node.block<3, 3>(9, 3) = -follows_by_spin;
-  if (const RodContact* contact = contact_at(i)) {
-    const auto index = static_cast<std::size_t>(contacts_[static_cast<std::size_t>(i)]);
-    const obstacle::Gap gap = contact->gap(node.r);
-    difference.tail<3>() -= point.forces[index] * gap.gradient;
-    by_node.block<3, 3>(9, 0) = -point.forces[index] * gap.hessian;
-    by_before.push_back({force_[index], Difference::Zero()});
-    by_before.back().values.bottomRows(3) = -rate_ * rate_ * gap.gradient;
-  }
-  if (rows.derivatives != nullptr) by_before.push_back({column, by_node * basis_});
-  if (const RodSpan::Hold* hold = mesh_.hold[static_cast<std::size_t>(i)]) {
-    rows.add(positions_.transpose() * (node.r - hold->position),
-             {{column, positions_.transpose() * basis_.topRows<3>()}});
+void ShootingSystem::start_equations(const ShootingPoint& point, Rows& rows) const {
+  const RodState& node = point.nodes.front();
+  const Eigen::MatrixXd one = Eigen::MatrixXd::Identity(positions_.cols(), positions_.cols());
+  contact_equations(node, 0, rows);
+  if (mesh_.hold.front() != nullptr) {
+    rows.add(positions_.transpose() * (node.r - mesh_.hold.front()->position), {{0, one}});
   } else {
-    rows.add(combine(9, positions_.transpose() / (rate_ * rate_)), difference, by_before);
+    const ContactForceTerm push = contact_force_at(point, 0);
+    const auto [follows, by_spin] = rotated_load(node, mesh_.follower_load.col(0));
+    const Eigen::Vector3d n = node.n + mesh_.load.col(0) + follows + push.force;
+    const double force = rate_ * rate_;
+    rows.add(-positions_.transpose() * n / force,
+             push.with({{spin_index(), -positions_.transpose() * by_spin * turns_ / force},
+                        {n_index(), -one}}));
   }
-  const Eigen::MatrixX3d continuous = frame_equations(node, i, rows);
-  rows.add(combine(6, continuous / rate_), difference, by_before);
+  const Eigen::Index free = frame_equations(node, 0, rows).cols();
+  const auto [follows, by_spin] = rotated_load(node, mesh_.follower_couple.col(0));
+  const Eigen::Vector3d m = node.m + mesh_.couple.col(0) + follows;
+  const Eigen::MatrixXd turned = by_spin * turns_ / rate_;
+  if (free == turns_.cols()) return;
+  if (free > 0) {
+    const Eigen::RowVector3d direction = clamps_.front()->direction.transpose();
+    rows.add(direction * m / rate_, {{spin_index(), direction * turned}, {m_index(), direction}});
+  } else if (span_.clamps.empty() && span_.round() && turns_.cols() == 3) {
+    const Eigen::Matrix<double, 3, 2> across = axes_across(start_.front().t());
+    rows.add(across.transpose() * m / rate_,
+             {{spin_index(), across.transpose() * turned}, {m_index(), across.transpose()}});
+    const Eigen::Vector3d rotation = rotation_between(start_.front().R, node.R);
+    const Eigen::RowVector3d tangent = start_.front().t().transpose();
+    rows.add(tangent * rotation, {{spin_index(), tangent * rotation_rate(rotation)}});
+  } else {
+    rows.add(turns_.transpose() * m / rate_,
+             {{spin_index(), turns_.transpose() * turned},
+              {m_index(), Eigen::MatrixXd::Identity(turns_.cols(), turns_.cols())}});
+  }
 }
 
 std::vector<ShootingSystem::Block> ShootingSystem::width_derivatives(
-    Eigen::Index i, const Difference& by_width) const {
+    Eigen::Index i, const Eigen::VectorXd& by_width) const {
   std::vector<Block> blocks;
   if (shares_.empty()) return blocks;
   const Share& share = shares_[static_cast<std::size_t>(i)];
@@ -218,40 +223,81 @@ std::vector<ShootingSystem::Block> ShootingSystem::width_derivatives(
   return blocks;
 }
 
+/// Returns the derivatives of a node's state by its own unknowns.
+/// @param placed  number of the unknowns of its position to include, from the first on
+RodVariation ShootingSystem::variation_by(Eigen::Index placed) const {
+  const Eigen::Index turns = turns_.cols();
+  RodVariation change(placed + 2 * turns + positions_.cols());
+  change.r.leftCols(placed) = positions_.leftCols(placed);
+  change.spin.middleCols(placed, turns) = turns_;
+  change.m.middleCols(placed + turns, turns) = rate_ * turns_;
+  change.n.rightCols(positions_.cols()) = rate_ * rate_ * positions_;
+  return change;
+}
+
 bool ShootingSystem::interval_equations(const ShootingPoint& point, Eigen::Index i,
                                         Rows& rows) const {
+  const Eigen::Index positions = positions_.cols();
+  const RodState& node = point.nodes[static_cast<std::size_t>(i)];
   const RodState& next = point.nodes[static_cast<std::size_t>(i + 1)];
+  const double force = rate_ * rate_;
   RodElement piece = rod_element(span_, mesh_, i);
   piece.begin = point.s[i];
   piece.length = point.s[i + 1] - point.s[i];
   // The end of an interval without a surface moves as its begin moves; on a surface the pressure
   // depends on r.
-  const Eigen::Index shifts = piece.surface == nullptr ? positions_.cols() : 0;
-  const Eigen::Index column = i * unknowns_per_node();
-  RodState end = point.nodes[static_cast<std::size_t>(i)];
-  RodVariation change(12, 0);
-  if (rows.derivatives != nullptr) change = basis_.rightCols(unknowns_per_node() - shifts);
-  if (!integrate_rod(piece, tolerance_, end, &change)) return false;
+  const Eigen::Index placed = piece.surface != nullptr ? positions : 0;
+  RodState end = node;
+  RodVariation change = rows.derivatives != nullptr ? variation_by(placed) : RodVariation(0);
+  RodIntegrals integrals;
+  if (!integrate_rod(piece, tolerance_, end, change, integrals)) return false;
+  const RodRate by_width =
+      rate_of({piece.section, piece.natural, point.s[i + 1], 0, piece.surface}, end);
+  const Eigen::Index own_index = i * unknowns_per_node();
+  const Eigen::Index other = own_index + unknowns_per_node();
+  const Eigen::Index from = own_index + (placed > 0 ? 0 : spin_index());
+  const Eigen::MatrixXd one = Eigen::MatrixXd::Identity(positions, positions);
+  std::vector<Block> moved = width_derivatives(i, positions_.transpose() * by_width.r);
+  moved.push_back({from, positions_.transpose() * change.r});
+  moved.push_back({other, -one});
+  if (placed == 0) moved.push_back({own_index, one});
+  rows.add(positions_.transpose() * (end.r - next.r), moved);
   const Eigen::Vector3d rotation = rotation_between(next.R, end.R);
-  std::vector<Block> by_end;
-  std::vector<Block> blocks;
-  if (rows.derivatives != nullptr) {
-    const Eigen::Matrix3d rate = rotation_rate(rotation);
-    by_end = width_derivatives(
-        i, rate_of({piece.section, piece.natural, point.s[i + 1], 0, piece.surface}, end));
-    by_end.push_back({column, basis_.leftCols(shifts)});
-    by_end.push_back({column + shifts, change});
-    for (Block& block : by_end) {
-      block.values.middleRows(3, 3) = rate * block.values.middleRows(3, 3);
-    }
-    blocks = by_end;
-    blocks.push_back({column + unknowns_per_node(), -basis_});
-    blocks.back().values.middleRows(3, 3) = -rate.transpose() * basis_.middleRows<3>(3);
+  const Eigen::Matrix3d rate = rotation_rate(rotation);
+  std::vector<Block> turned = width_derivatives(i, turns_.transpose() * rate * by_width.spin);
+  turned.push_back({from, turns_.transpose() * rate * change.spin});
+  turned.push_back({other + spin_index(), -turns_.transpose() * rate.transpose() * turns_});
+  rows.add(turns_.transpose() * rotation, turned);
+  contact_equations(next, i + 1, rows);
+  if (const RodSpan::Hold* hold = mesh_.hold[static_cast<std::size_t>(i + 1)]) {
+    rows.add(positions_.transpose() * (next.r - hold->position), {{other, one}});
+  } else {
+    const ContactForceTerm push = contact_force_at(point, i + 1);
+    const auto [follows, by_spin] = rotated_load(next, mesh_.follower_load.col(i + 1));
+    std::vector<Block> pulled = width_derivatives(i, positions_.transpose() * by_width.n / force);
+    pulled.push_back({from, positions_.transpose() * change.n / force});
+    pulled.push_back({other + spin_index(), -positions_.transpose() * by_spin * turns_ / force});
+    pulled.push_back({other + n_index(), -one});
+    const Eigen::Vector3d added = mesh_.load.col(i + 1) + follows + push.force;
+    rows.add(positions_.transpose() * (end.n - added - next.n) / force,
+             push.with(std::move(pulled)));
   }
-  Difference difference = Difference::Zero();
-  difference.head<6>() << end.r - next.r, rotation;
-  rows.add(basis_.leftCols(positions_.cols() + turns_.cols()).transpose(), difference, blocks);
-  node_equations(point, i + 1, end, std::move(by_end), rows);
+  const Eigen::Matrix3Xd free = frame_equations(next, i + 1, rows);
+  if (free.cols() == turns_.cols()) return true;
+  // Components of the moment that are continuous, except for the jump by pulls on the tangent and
+  // d1: m = ... - t x q.
+  const Eigen::MatrixXd kept =
+      free.cols() == 0
+          ? Eigen::MatrixXd(turns_.transpose())
+          : Eigen::MatrixXd(clamps_[static_cast<std::size_t>(i + 1)]->direction.transpose());
+  const auto [jump, by_spin] =
+      jump_of_moment(next, mesh_.tangent_force.col(i + 1), mesh_.d1_force.col(i + 1));
+  const auto [follows, follows_by_spin] = rotated_load(next, mesh_.follower_couple.col(i + 1));
+  std::vector<Block> bent = width_derivatives(i, kept * by_width.m / rate_);
+  bent.push_back({from, kept * change.m / rate_});
+  bent.push_back({other + spin_index(), -kept * (by_spin + follows_by_spin) * turns_ / rate_});
+  bent.push_back({other + m_index(), -kept * turns_});
+  rows.add(kept * (end.m - mesh_.couple.col(i + 1) - follows - jump - next.m) / rate_, bent);
   return true;
 }
 

@@ -41,13 +41,6 @@ ShootingSystem::ShootingSystem(const RodSpan& span, const RodMesh& mesh, const C
     positions_ << span.plane->x, span.plane->y;
     turns_ = span.plane->x.cross(span.plane->y);
   }
-  const Eigen::Index positions = positions_.cols();
-  const Eigen::Index turns = turns_.cols();
-  basis_.setZero(12, 2 * (positions + turns));
-  basis_.topLeftCorner(3, positions) = positions_;
-  basis_.block(3, positions, 3, turns) = turns_;
-  basis_.block(6, positions + turns, 3, turns) = rate_ * turns_;
-  basis_.bottomRightCorner(3, positions) = rate_ * rate_ * positions_;
   for (const double s : mesh.s) {
     const RodSpan::Clamp* clamp = span.clamp_at(s);
     clamps_.push_back(clamp);
@@ -118,14 +111,15 @@ RodState ShootingSystem::in_plane(const RodState& state) const {
 }
 
 ShootingPoint ShootingSystem::moved(const ShootingPoint& point, const Eigen::VectorXd& step) const {
+  const Eigen::Index positions = positions_.cols();
+  const Eigen::Index turns = turns_.cols();
   ShootingPoint result = point;
   Eigen::Index at = 0;
   for (RodState& state : result.nodes) {
-    const Difference change = basis_ * step.segment(at, unknowns_per_node());
-    state.r += change.head<3>();
-    state.R = from_rotation_vector(change.segment<3>(3)) * state.R;
-    state.m += change.segment<3>(6);
-    state.n += change.tail<3>();
+    state.r += positions_ * step.segment(at, positions);
+    state.R = from_rotation_vector(turns_ * step.segment(at + spin_index(), turns)) * state.R;
+    state.m += rate_ * (turns_ * step.segment(at + m_index(), turns));
+    state.n += rate_ * rate_ * (positions_ * step.segment(at + n_index(), positions));
     at += unknowns_per_node();
   }
   for (std::size_t k = 0; k < force_.size(); ++k) {
@@ -146,9 +140,9 @@ ShootingPoint ShootingSystem::moved(const ShootingPoint& point, const Eigen::Vec
 double ShootingSystem::allowed_step_share(const ShootingPoint& point,
                                           const Eigen::VectorXd& step) const {
   double turn = 0;
-  Eigen::Index at = 0;
+  Eigen::Index at = spin_index();
   for (const RodState& node : point.nodes) {
-    const Eigen::Vector3d spin = basis_.middleRows<3>(3) * step.segment(at, unknowns_per_node());
+    const Eigen::Vector3d spin = turns_ * step.segment(at, turns_.cols());
     turn = std::max(turn, spin.cross(node.t()).norm());
     at += unknowns_per_node();
   }

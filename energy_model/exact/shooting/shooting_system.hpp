@@ -91,13 +91,13 @@ class ShootingSystem {
     Eigen::MatrixXd values;
   };
   struct Rows;
-  /// Difference of two states, with the rows of RodVariation.
-  using Difference = Eigen::Matrix<double, 12, 1>;
-  /// Linear combinations of the components of a difference, one per row.
-  using Combinations = Eigen::Matrix<double, Eigen::Dynamic, 12>;
-  [[nodiscard]] static Combinations combine(Eigen::Index first, const Eigen::MatrixX3d& rows);
 
-  [[nodiscard]] Eigen::Index unknowns_per_node() const { return basis_.cols(); }
+  [[nodiscard]] Eigen::Index spin_index() const { return positions_.cols(); }
+  [[nodiscard]] Eigen::Index m_index() const { return positions_.cols() + turns_.cols(); }
+  [[nodiscard]] Eigen::Index n_index() const { return positions_.cols() + 2 * turns_.cols(); }
+  [[nodiscard]] Eigen::Index unknowns_per_node() const {
+    return 2 * (positions_.cols() + turns_.cols());
+  }
 
   /// Position of a node and width of its interval, relative to the part between two nodes whose arc
   /// lengths are unknown or fixed.
@@ -116,33 +116,30 @@ class ShootingSystem {
   /// Returns the contact at a node; null: none.
   [[nodiscard]] const RodContact* contact_at(Eigen::Index node) const;
 
-  /// Adds the conditions of a clamp for the frame of node i, or that of a round rod without a
-  /// clamp.
-  /// @return directions in which the moment is continuous, one per row: none at a clamp that holds
-  /// the frame, its direction at another clamp
-  [[nodiscard]] Eigen::MatrixX3d frame_equations(const RodState& node, Eigen::Index i,
-                                                 Rows& rows) const;
+  /// Adds the conditions of a clamp for the frame of node i.
+  /// @return directions in which the moment is free, one per column: all at a clamp that holds the
+  /// frame, those across its direction at another clamp, none without a clamp
+  Eigen::Matrix3Xd frame_equations(const RodState& node, Eigen::Index i, Rows& rows) const;
 
-  /// Adds the conditions at a node: contact, the position of a grip or balance of forces, the
-  /// direction of a clamp, and balance of the moments that no clamp carries.
-  /// @param before     state before the node
-  /// @param by_before  its derivatives; empty at the begin
-  void node_equations(const ShootingPoint& point, Eigen::Index i, const RodState& before,
-                      std::vector<Block> by_before, Rows& rows) const;
+  /// Adds the conditions at the start: position and direction of a clamp, or moment and force equal
+  /// to the load.
+  void start_equations(const ShootingPoint& point, Rows& rows) const;
 
-  /// Adds continuity of positions and frames at the end of interval i, and the conditions at the
-  /// node there. @return false if the integration of the interval fails
+  [[nodiscard]] RodVariation variation_by(Eigen::Index placed) const;
   [[nodiscard]] bool interval_equations(const ShootingPoint& point, Eigen::Index i,
                                         Rows& rows) const;
 
-  /// Returns the derivatives of the state at the end of interval i by the arc lengths of the nodes
-  /// that determine its width.
+  /// Returns the derivatives of the equations at the end of interval i by the arc lengths of the
+  /// nodes that determine its width.
   [[nodiscard]] std::vector<Block> width_derivatives(Eigen::Index i,
-                                                     const Difference& by_width) const;
+                                                     const Eigen::VectorXd& by_width) const;
 
   /// Adds the conditions of a contact at a node, and of the begin of a part that lies, for the
   /// cross-section there.
   void contact_equations(const RodState& node, Eigen::Index i, Rows& rows) const;
+
+  struct ContactForceTerm;
+  [[nodiscard]] ContactForceTerm contact_force_at(const ShootingPoint& point, Eigen::Index i) const;
 
   const RodSpan& span_;
   const RodMesh& mesh_;
@@ -151,7 +148,6 @@ class ShootingSystem {
   double rate_;                                // unit of m; its square is the unit of n
   Eigen::Matrix3Xd positions_;                 // axes of positions and forces, one per column
   Eigen::Matrix3Xd turns_;                     // axes of spins and moments, one per column
-  RodVariation basis_;                         // change of a node's state by its unknowns
   std::vector<const RodSpan::Clamp*> clamps_;  // clamp at each node; null: none
   ClampFrames frames_;                         // frame at each node
   std::vector<RodState> start_;

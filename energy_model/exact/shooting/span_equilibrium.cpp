@@ -21,7 +21,7 @@ void add_energies(const RodSpan& span, double tolerance, SpanEquilibrium& equili
     equilibrium.energy.load -= mesh.load.col(i).dot(state.r);
     if (i == mesh.intervals()) break;
     RodIntegrals integrals;
-    if (!integrate_rod(rod_element(span, mesh, i), tolerance, state, nullptr, &integrals)) {
+    if (!integrate_rod(rod_element(span, mesh, i), tolerance, state, integrals)) {
       equilibrium.converged = false;
       equilibrium.message = "the integrator failed while computing the energies";
       equilibrium.energy = {NAN, NAN, NAN, NAN};
@@ -153,7 +153,8 @@ std::vector<RodState> states_at(const SpanEquilibrium& equilibrium, const RodSpa
     if (at > reached) {
       const RodElement piece{section_at(span, (nodes[i] + nodes[i + 1]) / 2), span.natural, reached,
                              at - reached, equilibrium.contacts.surface_of(i)};
-      if (!integrate_rod(piece, tolerance, state)) {
+      RodIntegrals integrals;
+      if (!integrate_rod(piece, tolerance, state, integrals)) {
         state.r.setConstant(std::numeric_limits<double>::quiet_NaN());
         state.R.setConstant(std::numeric_limits<double>::quiet_NaN());
       }
@@ -166,8 +167,11 @@ std::vector<RodState> states_at(const SpanEquilibrium& equilibrium, const RodSpa
 
 void carry_frames(const RodSpan& span, const RodMesh& mesh, double tolerance,
                   std::vector<RodState>& states) {
-  const auto first =
-      static_cast<std::size_t>(span.clamps.empty() ? 0 : node_at(mesh.s, span.clamps.front().at));
+  const std::size_t first =
+      span.clamps.empty() ? 0
+                          : static_cast<std::size_t>(std::lower_bound(mesh.s.begin(), mesh.s.end(),
+                                                                      span.clamps.front().at) -
+                                                     mesh.s.begin());
   RodState& first_state = states[first];
   first_state.R = span.clamps.empty()
                       ? frame_along(first_state.t(), first_state.t().unitOrthogonal())
@@ -176,7 +180,9 @@ void carry_frames(const RodSpan& span, const RodMesh& mesh, double tolerance,
   const auto carried = [&](std::size_t i) {
     RodState state = states[i];
     const auto interval = static_cast<Eigen::Index>(i);
-    const bool followed = integrate_rod(rod_element(span, mesh, interval), tolerance, state);
+    RodIntegrals integrals;
+    const bool followed =
+        integrate_rod(rod_element(span, mesh, interval), tolerance, state, integrals);
     return transported(followed ? state.R : states[i].R, states[i + 1].t());
   };
   for (std::size_t i = first; i + 1 < states.size(); ++i) states[i + 1].R = carried(i);

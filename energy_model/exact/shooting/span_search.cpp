@@ -13,12 +13,17 @@
 namespace dlo::energy_model {
 namespace {
 
+using Eigen::Quaterniond;
+
+// Largest component of directors across the plane of planar frames.
+constexpr double in_plane = 1e-6;
 constexpr double same_directors = 1e-6;  // largest difference of directors of two equal equilibria
 // Maximum number of polygons to shoot from if one converges to a minimum.
 constexpr std::size_t most_descents = 6;
 // Maximum number of polygons to shoot from while none converges to a minimum.
 constexpr std::size_t most_without_minimum = 16;
 constexpr int most_saddle_departures = 8;  // maximum number of saddles to leave
+constexpr double saddle_departure = 0.3;   // largest spin when a saddle is left [rad]
 constexpr int finer_polygons = 2;          // number of finer polygons after a shot that has failed
 // Maximum number of intervals of a polygon on a finer mesh.
 constexpr Eigen::Index most_intervals = 1000;
@@ -65,6 +70,7 @@ class SpanSearch {
       descend(polygons.found[i]);
     }
     leave_saddles();
+    flow_from_saddle();
     const bool complete = polygons.complete && !deadline_.passed();
     if (found_.empty()) {
       if (!complete) failed_.message = to_string(SolveStatus::time_limit);
@@ -109,34 +115,62 @@ class SpanSearch {
       refine(longest_of(mesh) / 3);
       equilibrium = shoot_from(mesh, polygon);
     }
-    add(std::move(equilibrium));
+    if (!equilibrium.converged) {
+      failed_ = std::move(equilibrium);
+      return;
+    }
+    const bool known = std::any_of(found_.begin(), found_.end(), [&](const auto& other) {
+      return are_equal_equilibria(span_, other, equilibrium);
+    });
+    if (!known) found_.push_back(std::move(equilibrium));
   }
 
-  /// Leaves unstable equilibria below all stable ones, which show that a minimum has been missed,
-  /// by the gradient flow.
+  /// Leaves unstable equilibria below all stable ones, which show that a minimum has been missed.
   void leave_saddles() {
     std::vector<double> energies;  // energies of the saddles that have been left
     for (int i = 0; i < most_saddle_departures && !deadline_.passed(); ++i) {
       const SpanEquilibrium* lowest = saddle_below_minima(found_, energies);
       if (lowest == nullptr) return;
       energies.push_back(lowest->energy.total());
-      SpanEquilibrium left = leave_saddle(
-          span_, *lowest,
-          {.tolerance = tolerance_, .max_iterations = search_iterations, .deadline = deadline_});
-      integrations_ += left.integrations;
-      add(std::move(left));
+      const SpanEquilibrium saddle = *lowest;
+      for (const double side : {1.0, -1.0}) leave(saddle, side * saddle_departure);
     }
   }
 
-  /// Adds an equilibrium unless it is known.
-  void add(SpanEquilibrium equilibrium) {
-    if (!equilibrium.converged) {
-      failed_ = std::move(equilibrium);
-    } else if (std::ranges::none_of(found_, [&](const SpanEquilibrium& other) {
-                 return are_equal_equilibria(span_, other, equilibrium);
-               })) {
-      found_.push_back(std::move(equilibrium));
+  /// Relaxes the polygon from beside a saddle, and shoots from it.
+  void leave(const SpanEquilibrium& saddle, double amplitude) {
+    if (saddle.stability.s.size() == 0) return;
+    const Eigen::VectorXd middles =
+        (mesh_.s.head(mesh_.intervals()) + mesh_.s.tail(mesh_.intervals())) / 2;
+    const std::vector<RodState> states =
+        states_at(saddle, span_, {middles.begin(), middles.end()}, tolerance_);
+    const Eigen::Matrix3Xd spins = amplitude * saddle.stability.spin_at(middles);
+    std::vector<Quaterniond> frames;
+    Motion motion = span_.plane ? Motion::in_plane : Motion::in_space;
+    for (Eigen::Index i = 0; i < middles.size(); ++i) {
+      const auto at = static_cast<std::size_t>(i);
+      frames.emplace_back(from_rotation_vector(spins.col(i)) * Quaterniond(states[at].R));
+      if (!lies_in_plane(frames.back())) motion = Motion::in_space;
     }
+    descend(relax_polygon(span_, mesh_, frames, motion, deadline_));
+  }
+
+  /// Follows the gradient flow from the lowest saddle if no stable equilibrium is found. A polygon
+  /// may return to the saddle, but the gradient flow does not.
+  void flow_from_saddle() {
+    if (found_.empty() || std::isfinite(lowest_stable_energy(found_))) return;
+    sort_by_stability(found_);
+    SpanEquilibrium left = leave_saddle(
+        span_, found_.front(),
+        {.tolerance = tolerance_, .max_iterations = search_iterations, .deadline = deadline_});
+    integrations_ += left.integrations;
+    if (left.converged) found_.push_back(std::move(left));
+  }
+
+  [[nodiscard]] bool lies_in_plane(const Quaterniond& frame) const {
+    if (!span_.plane) return false;
+    const Eigen::Vector3d out = frame.conjugate() * span_.plane->x.cross(span_.plane->y);
+    return std::abs(out.z()) < in_plane && (span_.round() || std::abs(out.x()) < in_plane);
   }
 
   const RodSpan& span_;

@@ -21,11 +21,10 @@ struct SpanSearchResult {
 /// Finds equilibria by Newton's method from the minima of polygons (relaxed_polygon.hpp), in the
 /// span's plane and out of it: from the six lowest ones, and from ten more while none of the
 /// results is stable. If a polygon's force is large for its mesh, or Newton's method does not
-/// converge, the polygon is relaxed again on a finer mesh. From an unstable equilibrium below all
-/// stable ones, the gradient flow of the energy leads to a stable one. If nothing is found, a
-/// failed result is returned. Equilibria of a span that stretches are continued from those of the
-/// inextensible span (stretch_span()), and Newton's method also starts from straight lines between
-/// two or more grips.
+/// converge, the polygon is relaxed again on a finer mesh. An unstable equilibrium below all stable
+/// ones is left in both directions along the mode of its smallest eigenvalue, and the polygon is
+/// relaxed from there. If nothing is stable then, the gradient flow starts from the lowest
+/// equilibrium. If nothing is found, a failed result is returned.
 ///
 /// Frames after the first clamp are released for this search. If clamps hold frames, those of the
 /// lowest equilibrium are then rotated to the held ones (twist_span()); the result is then one
@@ -58,21 +57,18 @@ struct SpanSearchResult {
 
 /// Returns the equilibrium to which Newton's method converges from a shape of the span's problem,
 /// or of a similar one. If the shape has no `twists` for a round span, the span is refined without
-/// twist and then twisted. Material directors are those of the shape's d1.
+/// twist and then twisted. Material directors are those of the shape's d1. If it has none, they
+/// rotate from those of the first clamp by the torque that the grips' reactions imply.
 /// @throws std::invalid_argument if the span is not round and has no clamp, or if its loads are too
 /// large (check_load())
 [[nodiscard]] SpanEquilibrium refine_span(const RodSpan& span, const Problem& problem,
                                           const Equilibrium& shape, double tolerance,
                                           const Deadline& deadline);
 
-/// Returns the cross-sections of a shape just after the nodes of a mesh, as an initial guess.
-/// Moments are computed from its curvature, its `twists` and the rotation of its d1. Frames that a
-/// shape with material directors has no d1 for are integrated from that of the first clamp.
-/// @param behind  distance behind a node, where the curvature may jump, at which the shape is
-///                sampled [l]
-[[nodiscard]] std::vector<RodState> states_of(const RodSpan& span, const RodMesh& mesh,
-                                              const Problem& problem, const Equilibrium& shape,
-                                              double behind, double tolerance);
+/// Returns the force of the part beyond the arc length s (over l) on the part before, just after s,
+/// that the grips' forces of a shape imply, in EI/l^2.
+[[nodiscard]] Eigen::Vector3d implied_force(const Problem& problem, const Equilibrium& shape,
+                                            double s);
 
 /// Returns the length of intervals that resolves the bends by a force over b and by the natural
 /// strains.

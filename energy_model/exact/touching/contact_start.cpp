@@ -14,6 +14,9 @@ namespace dlo::energy_model {
 namespace {
 
 constexpr double arc_length_rounding = 1e-9;  // difference of equal arc lengths, in l
+// Length of an interval times the square root of the force that bends.
+constexpr double growth_of_interval = 3;
+constexpr double twist_step = 1e-4;  // distance over which the rotation of d1 is measured, in l
 
 class Layout {
  public:
@@ -33,8 +36,10 @@ class Layout {
   [[nodiscard]] std::optional<ContactStart> run(double tolerance) {
     make_nodes();
     if (!place_contacts() || !are_contacts_separate()) return std::nullopt;
-    start_.states =
-        states_of(start_.span, start_.mesh, problem_, shape_, arc_length_rounding, tolerance);
+    sample();
+    if (!has_material_directors(problem_)) {
+      carry_frames(start_.span, start_.mesh, tolerance, start_.states);
+    }
     if (!set_lying_forces(tolerance)) return std::nullopt;
     return std::move(start_);
   }
@@ -66,13 +71,15 @@ class Layout {
     const auto is_duplicate = [](double a, double b) { return b - a < arc_length_rounding; };
     touched.erase(std::unique(touched.begin(), touched.end(), is_duplicate), touched.end());
     force = std::max(1.0, force / least_bending_stiffness(start_.span));
-    const double longest = std::min(start_.span.length / 8, largest_growth / std::sqrt(force));
+    const double longest = std::min(start_.span.length / 8, growth_of_interval / std::sqrt(force));
     start_.mesh = make_mesh(start_.span, longest, touched);
     start_.mesh.contacts.surface.resize(static_cast<std::size_t>(start_.mesh.intervals()));
   }
 
   [[nodiscard]] Eigen::Index node_at(double arc_length) const {
-    return energy_model::node_at(start_.mesh.s, snapped(arc_length / l_) - arc_length_rounding);
+    const Eigen::VectorXd& s = start_.mesh.s;
+    return std::lower_bound(s.begin(), s.end(), snapped(arc_length / l_) - arc_length_rounding) -
+           s.begin();
   }
 
   [[nodiscard]] bool place_contacts() {
@@ -132,9 +139,61 @@ class Layout {
     return (sample.points.col(0) - problem_.grips.front().position) / l_;
   }
 
-  /// Sets the force n in the states of parts that lie on a surface. At the begin of a part the
-  /// component of n normal to the surface follows from the lying conditions. From there on n
-  /// follows by integration of the pressure of the surface.
+  /// Returns the strain about the tangent at s, for a shape with d1.
+  [[nodiscard]] double twist_at(double s) const {
+    const double from = std::max(0.0, s - twist_step);
+    const double to = std::min(1.0, s + twist_step);
+    const Samples sample = shape_.sample(std::array{from * l_, s * l_, to * l_});
+    const Eigen::Vector3d t = sample.tangents.col(1);
+    const Eigen::Vector3d d1 = sample.d1.col(1);
+    return (sample.d1.col(2) - sample.d1.col(0)).dot(t.cross(d1)) / (to - from);
+  }
+
+  [[nodiscard]] double torque_at(double s) const {
+    for (const TwistedPart& part : shape_.twists) {
+      if (part.begin <= s * l_ && s * l_ <= part.end) return part.torque / (force_unit_ * l_);
+    }
+    return 0;
+  }
+
+  void sample() {
+    const bool directors = has_material_directors(problem_);
+    // The shape is sampled just after the nodes, at which its curvature may jump.
+    std::vector<double> after;
+    for (const double s : start_.mesh.s)
+      after.push_back(std::min(s + arc_length_rounding, 1.0) * l_);
+    const Samples at = shape_.sample(after);
+    for (Eigen::Index i = 0; i < start_.mesh.s.size(); ++i) {
+      const double s = start_.mesh.s[i];
+      const bool last = i == start_.mesh.intervals();
+      const Eigen::Vector3d t = at.tangents.col(i).normalized();
+      RodState state;
+      state.r = (at.points.col(i) - problem_.grips.front().position) / l_;
+      state.R = frame_along(t, directors ? Eigen::Vector3d(at.d1.col(i)) : t.unitOrthogonal());
+      if (!last) {
+        const RodSection& section = start_.mesh.section_of(i);
+        const Eigen::Vector3d bent = l_ * at.curvature.col(i);
+        const Eigen::Vector3d u(-bent.dot(state.R.col(1)), bent.dot(state.R.col(0)), 0);
+        state.m = state.R * section.stiffness().cwiseProduct(u) +
+                  (directors ? section.torsion * twist_at(s) : torque_at(s)) * t;
+        state.n = force_after(i);
+      }
+      start_.states.push_back(state);
+    }
+  }
+
+  /// Returns n just after a node, from the actions of the shape's grips, contacts and loads before
+  /// it.
+  [[nodiscard]] Eigen::Vector3d force_after(Eigen::Index node) const {
+    Eigen::Vector3d force = implied_force(problem_, shape_, start_.mesh.s[node]);
+    for (const PlacedContact& contact : start_.contacts) {
+      if (contact.end <= node) force -= contact.part.force / force_unit_;
+    }
+    return force;
+  }
+
+  /// Sets n of parts that lie. At the begin its component across the surface follows from the lying
+  /// conditions; from there on the pressure of the surface is integrated.
   [[nodiscard]] bool set_lying_forces(double tolerance) {
     for (const PlacedContact& contact : start_.contacts) {
       for (Eigen::Index i = contact.begin; i < contact.end; ++i) {
@@ -148,7 +207,8 @@ class Layout {
         }
         if (i + 1 == contact.end) break;
         RodState end = state;
-        if (!integrate_rod(rod_element(start_.span, start_.mesh, i), tolerance, end)) {
+        RodIntegrals integrals;
+        if (!integrate_rod(rod_element(start_.span, start_.mesh, i), tolerance, end, integrals)) {
           return false;
         }
         start_.states[static_cast<std::size_t>(i + 1)].n = end.n;

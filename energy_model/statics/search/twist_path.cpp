@@ -294,13 +294,18 @@ class TwistPath {
     }
     if (!direction) direction = eigenvector_by_magnitude(reduced, 0);
     double push = first_displacement;
-    for (int i = 0; i < most_displacements; ++i, push *= 3) {
+    for (int i = 0; i < 2 * most_displacements; ++i) {
       SpanSolution next = from;
       next.evaluations = 0;
       if (direction) next.x += push * *direction;
-      descend_in_trust_region(
-          next,
-          {.load = load_, .gradient_tolerance = handover_gradient, .deadline = &options_.deadline});
+      if (i % 2 == 0) {
+        descend_by_augmented_lagrangian(next, {.load = load_, .deadline = &options_.deadline});
+      } else {
+        descend_in_trust_region(next, {.load = load_,
+                                       .gradient_tolerance = handover_gradient,
+                                       .deadline = &options_.deadline});
+        push *= 3;
+      }
       if (succeeded(next.status)) newton(next, NewtonMethod::newton);
       next = update_contacts_of(std::move(next));
       spent_ += std::exchange(next.evaluations, 0);

@@ -124,25 +124,34 @@ void LocalSolver::newton(SpanSolution& solution, NewtonOptions how) const {
 }
 
 SpanSolution LocalSolver::from_start(const Start& from) {
-  SpanSolution solution = empty_solution(std::min(coarse_terms(), max_terms));
-  solution.x = from.model ? solution.model->prolong(*from.model, from.x)
-                          : solution.model->fit(from.field(solution.model->nodes()));
-  const Eigen::VectorXd start = solution.x;
-  // For a taut rod such a start is already close to the shape.
-  const bool is_near = traits_.taut && !solution.model->has_soft_obstacles();
-  if (is_near) newton(solution);
-  if (!is_near || (!solution.is_equilibrium() && !out_of_time())) {
-    solution.x = start;
-    solution.multipliers.resize(0);
-    descend(solution);
+  SpanSolution solution;
+  int spent = 0;
+  for (int count = coarse_terms();; count *= 2) {
+    solution = empty_solution(std::min(count, max_terms));
+    solution.x = from.model ? solution.model->prolong(*from.model, from.x)
+                            : solution.model->fit(from.field(solution.model->nodes()));
+    const Eigen::VectorXd start = solution.x;
+    // For a taut rod such a start is already close to the shape.
+    const bool is_near = traits_.taut && !solution.model->has_soft_obstacles();
+    if (is_near) newton(solution);
+    if (!is_near || (!solution.is_equilibrium() && !out_of_time())) {
+      solution.x = start;
+      solution.multipliers.resize(0);
+      descend(solution);
+    }
+    if (solution.model->constraints() > 0 && !solution.is_equilibrium() &&
+        !solution.model->has_soft_obstacles()) {
+      solution.x = start;
+      solution.multipliers.resize(0);
+      descend_to_constraints(solution);
+    }
+    spent += solution.evaluations;
+    solution.evaluations = spent;
+    const bool plain = solution.model->constraints() == 0 && !solution.model->has_soft_obstacles();
+    if (solution.is_equilibrium() || plain) return solution;
+    const bool more = 2 * solution.model->size() <= largest_descent_size && options_.terms == 0;
+    if (!more || out_of_time()) return solution;
   }
-  if (solution.model->constraints() > 0 && !solution.is_equilibrium() &&
-      !solution.model->has_soft_obstacles()) {
-    solution.x = start;
-    solution.multipliers.resize(0);
-    descend_to_constraints(solution);
-  }
-  return solution;
 }
 
 void LocalSolver::descend_to_constraints(SpanSolution& solution) const {

@@ -95,7 +95,8 @@ class LocalSolver {
 
   /// Runs Newton's method with the span's load and the search's deadline.
   void newton(SpanSolution& solution, NewtonOptions how = {}) const;
-  /// Solves from an initial guess with coarse_terms().
+  /// Solves from an initial guess, with as many coefficients as are needed to satisfy the
+  /// constraints.
   [[nodiscard]] SpanSolution from_start(const Start& from);
   /// Solves by Newton's method from an initial guess near an equilibrium.
   [[nodiscard]] SpanSolution newton_from(const TangentField& field);

@@ -29,6 +29,12 @@ constexpr double largest_residual = 1e-5;
 /// Largest constraint residual there, divided by the tolerance.
 constexpr double largest_gap = 10;
 
+/// Truncation indicator of a shape and its number of coefficients.
+struct TruncationIndicator {
+  int terms = 0;
+  double size = 0;
+};
+
 class Refinement {
  public:
   explicit Refinement(LocalSolver& on)
@@ -46,6 +52,7 @@ class Refinement {
     constexpr int most_between_contact_ends = 40;
     const int most_terms =
         std::min(affordable, span_.contact_ends.empty() ? max_terms : most_between_contact_ends);
+    TruncationIndicator before;
     bool solved_again = false;
     while (solution.is_equilibrium()) {
       solution.resolved = options_.terms > 0 || resolved(solution);
@@ -66,13 +73,14 @@ class Refinement {
         break;
       }
       const bool too_few = solution.terms < on_.terms() && !touches;
-      const int K = solution.terms;
-      int more = too_few ? on_.terms() : K + std::max(2, K / 4);
+      int more = too_few ? on_.terms() : terms_by_decay(solution, before);
       // Grips may pull harder than weight and loads.
       if (solution.multipliers.size() > 0 && !traits_.taut && !traits_.adapted) {
         more = std::max(
             more, first_terms(solution.multipliers.cwiseAbs().maxCoeff(), traits_.longest_element));
       }
+      if (before.terms == 0) more = std::max(more, terms_by_own_decay(solution));
+      before = {solution.terms, solution.model->truncation(solution.x)};
       solution = with_terms(solution, std::min(most_terms, more));
     }
     return solution;
@@ -91,6 +99,43 @@ class Refinement {
     finer = refine(adapted, std::move(finer));
     if (!finer.is_equilibrium()) return std::nullopt;
     return finer;
+  }
+
+  /// Predicts the number of coefficients with which the last ones of a first shape will be small
+  /// enough, if they continue to decrease exponentially as in its second half, which slightly
+  /// underestimates it. Returns the present number if they do not decrease.
+  [[nodiscard]] int terms_by_own_decay(const SpanSolution& solution) const {
+    constexpr double term_reserve_factor = 1.15;
+    constexpr double required_decrease_ratio = 0.5;
+    const int K = solution.terms;
+    const int half = K / 2;
+    const double before = solution.model->truncation(solution.x, half);
+    const double now = solution.model->truncation(solution.x);
+    if (options_.terms > 0 || half < 2 || !(now > 0 && now < required_decrease_ratio * before))
+      return K;
+    const double rate = std::log(before / now) / (K - half);
+    double all = K;
+    // The size that counts as small enough grows with the number of coefficients.
+    for (int i = 0; i < 2; ++i) {
+      all = K + std::log(now / (options_.tolerance * 4 * all * all)) / rate;
+      if (!(all > K)) return K;
+    }
+    return static_cast<int>(std::ceil(std::min(term_reserve_factor * all, 1.0 * max_terms)));
+  }
+
+  /// Predicts the number of coefficients with which the last ones will be small enough, if they
+  /// continue to decrease exponentially as since `before`; a quarter more if that is unknown.
+  [[nodiscard]] int terms_by_decay(const SpanSolution& solution,
+                                   const TruncationIndicator& before) const {
+    const int K = solution.terms;
+    const double now = solution.model->truncation(solution.x);
+    const double wanted = options_.tolerance * 4 * K * K;
+    int more = std::max(2, K / 4);
+    if (before.terms > 0 && now < before.size && now > wanted) {
+      const double rate = std::log(before.size / now) / (K - before.terms);
+      more = std::clamp(static_cast<int>(std::ceil(std::log(now / wanted) / rate)), 2, 2 * more);
+    }
+    return K + more;
   }
 
   /// Solves with more coefficients.
