@@ -50,8 +50,8 @@ TEST_P(BendingOfBothLaws, OpensTheJoint) {
   EXPECT_GT(forces(1, 1), 0);
 }
 
-// This holds for the paper's law too: the parts of F perpendicular to both segments have the same
-// torque as F, which points along the chord.
+// This holds for the paper's law too: the part of F perpendicular to a segment has the same torque
+// about the joint as F, which points along the chord.
 TEST_P(BendingOfBothLaws, ForcesAndTorquesSumToZeroForAnySegments) {
   for (const double spread : {0.0, 0.1, 0.9}) {
     for (unsigned seed = 0; seed < 100; ++seed) {

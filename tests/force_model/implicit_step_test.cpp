@@ -153,8 +153,8 @@ TEST(ImplicitStepper, MovesARestingRodWithItsGripperInOneSolve) {
             1e-10 * soft.length + 2 * rounding);
 }
 
-/// A gripper that moves and turns, as that of dlo bench does: error of each frame, RMS over the
-/// length.
+/// A gripper that moves and turns, as that of dlo bench does: error of every twentieth frame, RMS
+/// over the length.
 TEST(ImplicitStepper, FollowsAGripperWithinAMillionthOfTheLengthByOneSolveAFrame) {
   const SoftRod soft(32);
   Simulation simulation(soft.rod(), soft.straight(), implicit_options());

@@ -28,7 +28,7 @@ TEST(InstructionSet, ThatIsUnknownIsNamedWithThoseThatThereAre) {
   }
 }
 
-// CMakeLists.txt runs it, as all tests, with each name.
+// CMakeLists.txt runs it, as all tests but RigidFloor, with each name.
 TEST(InstructionSet, IsThatOfTheEnvironmentVariableElseTheFastest) {
   const char* name = std::getenv("DLO_INSTRUCTION_SET");
   EXPECT_EQ(fastest_instruction_set(), name != nullptr && *name != '\0'

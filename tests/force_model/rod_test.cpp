@@ -98,7 +98,7 @@ TEST(GripReaction, BalancesTheLoadsAboutAGripperFarFromTheOriginAndAfterItMoved)
       const Eigen::Matrix3Xd points = simulation.points();
       const GripReaction reaction = grip_reactions(simulation.rod(), points).front();
       const GripReaction expected = reaction_for_balance(simulation.rod(), points, about);
-      EXPECT_GT(expected.torque.norm(), 0.01);  // a force of 0.12 N acts at 0.5 m
+      EXPECT_GT(expected.torque.norm(), 0.01);  // a weight of 0.12 N acts at about 0.2 m
       EXPECT_LT((reaction.force - expected.force).norm(), 1e-7);
       EXPECT_LT((reaction.torque - expected.torque).norm(), 1e-7);
     };

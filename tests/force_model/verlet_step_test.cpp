@@ -14,7 +14,8 @@
 namespace dlo::force_model {
 namespace {
 
-/// The paper's rod with its masses, and steps of a share of the largest stable one.
+/// The paper's rod with its masses and a hundredth of its bending stiffness, and steps of a share
+/// of the largest stable one.
 struct Swinging {
   SteelRod steel;
   Rod rod;
@@ -39,7 +40,7 @@ TEST(VerletStepper, GoesThroughTimeWithSecondOrder) {
   EXPECT_NEAR(coarse / fine, 4, 0.2);
 }
 
-/// Returns the kinetic and potential energy at each step but the first and the last; velocities by
+/// Returns the sum of kinetic and potential energy after each step but the last; velocities by
 /// central differences.
 std::vector<double> energies(const Swinging& swinging, int steps) {
   Simulation simulation(swinging.rod, swinging.steel.straight(), swinging.options);

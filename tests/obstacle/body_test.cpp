@@ -44,7 +44,8 @@ TEST(Body, DistancesAreThoseOfGeometry) {
   EXPECT_EQ(Body::box({0, 0, 0}, Matrix3d::Identity(), {2, 4, 6}, 0).smallest_radius(), 0);
 }
 
-// Derivatives are compared with second-order differences, outside and just inside each body.
+// Derivatives are compared with second-order differences, outside each body and up to half of its
+// radius inside.
 TEST(Body, DerivativesAreDifferences) {
   constexpr double h = 1e-4;
   for (const Body& body : bodies()) {

@@ -72,7 +72,7 @@ TEST(Outline, OfAnInfiniteBodyExtendsFar) {
   EXPECT_NEAR(peg.row(0).maxCoeff(), far_away + 0.1, 1e-12);
 }
 
-// A half-space that is seen from above is behind everything and has no outline.
+// A half-space has an outline only if its surface is seen edge-on.
 TEST(Outline, IsEmptyWhereAHalfSpaceHasNoEdge) {
   EXPECT_EQ(seen_along_z(Body::half_space({0, 0, -1}, {0, 0, 1})).cols(), 0);
   EXPECT_EQ(seen_along_z(Body::half_space({0, 0, -1}, {0, 1, 1})).cols(), 0);
