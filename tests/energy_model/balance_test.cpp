@@ -49,7 +49,7 @@ struct BalancedRod {
   Equilibrium shape;
 };
 
-/// Returns one rod for each kind of load and constraint.
+/// Returns rods with all kinds of loads and constraints; some are solved by both models.
 std::vector<BalancedRod> balanced_rods() {
   using obstacle::Body;
   std::vector<BalancedRod> rods;
@@ -119,7 +119,7 @@ bool is_refused(const Problem& problem, Equilibrium shape) {
 }
 
 // Each force and torque in turn is changed by ten times the allowed imbalance: of grips, contacts
-// and obstacles.
+// and obstacles. At last the shape is displaced by 3e-6.
 TEST(Balance, IsLostWithEveryForceAndTorqueThatIsReturned) {
   constexpr double share = 10 * allowed_imbalance;
   for (const BalancedRod& rod : balanced_rods()) {

@@ -191,7 +191,8 @@ TEST(Certify, ClaimsNoMoreThanTheSearch) {
   EXPECT_EQ(saddle.status, SolveStatus::converged);
 }
 
-/// Returns a straight rod without weight, clamped at its begin.
+/// Returns the straight shape of a rod without weight that is clamped at its begin and passes
+/// through or next to a soft body, before it is certified.
 SpanSolution straight_through(const obstacle::Body& body, double stiffness) {
   Span span;
   span.length = 1;
@@ -203,8 +204,8 @@ SpanSolution straight_through(const obstacle::Body& body, double stiffness) {
   return straight_shape(span);
 }
 
-// A rod through the axis of a soft cylinder, or in the middle plane of a soft box, is unstable: the
-// energy decreases to both sides. Nodes that are not on the axis do not show this.
+// A rod through the axis of a soft cylinder is unstable: the energy decreases to both sides. Nodes
+// that are not on the axis do not show this. A rod very near to the axis is near singular.
 TEST(Certify, CallsNoShapeStableThatPassesTheMiddleOfAYieldingBody) {
   SpanWorkspace workspace;
   using obstacle::Body;

@@ -1,5 +1,5 @@
 // Tests of rods that are confined to their plane. Their shapes are equilibria of the free rod too,
-// as the other solver confirms, but stable only in the plane.
+// as the other solver confirms, but may be stable only in the plane.
 
 #include <gtest/gtest.h>
 
@@ -52,7 +52,7 @@ TEST(ConfinedRod, IsAnEquilibriumThatIsUnstableWhereNothingConfinesIt) {
   }
 }
 
-// If the free rod is stable in its plane, the confined rod has the same shape.
+// If the free rod is stable in its plane, the confined rod has the same energy.
 TEST(ConfinedRod, IsTheFreeOneWhereThatStaysInItsPlane) {
   for (const Problem& problem : {test::heavy_cantilever(12, 30), test::two_clamps(40, 0.7)}) {
     const Equilibrium free = solve_energy(problem);

@@ -13,8 +13,9 @@
 
 namespace dlo::test {
 
-/// Checks the contacts of a certified shape by its samples and forces alone: no point of the rod is
-/// within a rigid obstacle, every contact is on the surface of its obstacle, and no force pulls.
+/// Checks the contacts of a certified shape by its samples and forces alone: no sample is within
+/// a rigid obstacle, the ends and the middle of every contact are on the surface of its obstacle
+/// (to 1e-8 of the length), and no force pulls (to 1e-6 of the largest force).
 inline void expect_only_pushed(const energy_model::Problem& problem,
                                const energy_model::Equilibrium& shape) {
   const double l = problem.length;

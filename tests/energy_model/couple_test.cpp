@@ -136,7 +136,8 @@ TEST(Couple, PotentialIsZeroInTheDirectionOfTheClampBefore) {
   }
 }
 
-// Two pins whose chord points backwards: the angle is counted from the chord, within half a turn.
+// Two pins whose chord points forwards, aside or backwards: the angle is counted from the chord,
+// within half a turn.
 TEST(Couple, PotentialBetweenPinsIsCountedFromTheirChord) {
   for (const double degrees : {0.0, 100.0, 180.0, -120.0}) {
     const double angle = degrees * pi / 180;

@@ -49,7 +49,8 @@ TEST(DenseKernel, IsThatOfTheEnvironmentVariableElseTheFastest) {
             name != nullptr && *name != '\0' ? &dense_kernel_named(name) : kernels.back());
 }
 
-/// Returns a block of a matrix whose columns are not contiguous in memory.
+/// Fills a matrix with random numbers. Returns a block of it, whose columns are not contiguous in
+/// memory.
 MatrixXd::BlockXpr part_of(MatrixXd& whole, Index rows, Index columns) {
   whole = MatrixXd::Random(rows + 3, columns + 2);
   return whole.block(2, 1, rows, columns);

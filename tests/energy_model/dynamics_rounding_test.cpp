@@ -17,7 +17,8 @@
 namespace dlo::energy_model {
 namespace {
 
-/// A clamp that starts at once, which strikes the rod.
+/// Simulates a rod without weight whose clamp starts at once at 0.3 s, which strikes the rod.
+/// Returns the frames at `frame` and 0.4 s.
 Dynamics simulate_impact(const std::vector<double>& breaks, double frame) {
   constexpr double start = 0.3;
   MovingRod rod;
@@ -96,8 +97,8 @@ MovingRod thread_with_payload(double mass, double damping) {
   return rod;
 }
 
-/// Expects that the payload moves as a pendulum. @param share  largest allowed distance, in
-/// proportion to the thread's share of the mass
+/// Expects that the payload moves as a pendulum. @param share  largest allowed distance from
+/// the pendulum, divided by its length
 void expect_pendulum(const Dynamics& moved, const std::vector<double>& times, double share) {
   ASSERT_EQ(moved.status, SolveStatus::converged) << moved.message;
   for (std::size_t k = 0; k < times.size(); ++k) {

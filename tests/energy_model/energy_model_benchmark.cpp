@@ -1,7 +1,7 @@
 // Time and evaluations of the energy model. `plain_steps` is the time in units of one step of the
 // plain force model (Eigen, N = 16, hooke law, heavy ball) measured in the same run; `one_clamp` in
-// units of a cold solve of one horizontal clamp at Gamma = 10; `error` the largest distance from
-// the independent exact solution over l.
+// units of a cold solve of one horizontal clamp at Gamma = 10; `error` the largest distance of
+// five points from the independent exact solution over l.
 //
 //     dlo_energy_model_benchmark --benchmark_repetitions=5 --benchmark_report_aggregates_only=true
 
@@ -42,8 +42,9 @@ double median_seconds(int runs, int repeats, const Work& work) {
   return seconds[static_cast<std::size_t>(runs / 2)];
 }
 
-/// One step of the plain force model at N = 16: all forces, momentum, movement. Measured next to
-/// what it is compared with, so that a busy machine slows both.
+/// Returns the median time [s] of one step of the plain force model at N = 16: all forces,
+/// momentum, movement. Measured next to what it is compared with, so that a busy machine slows
+/// both.
 double plain_step() {
   dlo::force_model::Rod rod;
   const Eigen::Index n = 16;
@@ -74,7 +75,8 @@ Problem clamp(double gamma, double degrees = 0) {
   return problem;
 }
 
-/// Clamps `apart` l along x, each leaning by `out` [rad] out of the plane.
+/// Returns a rod between clamps that are `apart` l from each other along x and lean out of the
+/// plane to opposite sides, with the slope `out`.
 Problem two_clamps(double gamma, double apart, double out) {
   Problem problem = clamp(gamma);
   problem.grips[0].direction = Eigen::Vector3d(1, 0, out);
@@ -94,7 +96,8 @@ benchmark::Counter ratio_counter(double seconds) {
   return {seconds, benchmark::Counter::kIsIterationInvariantRate | benchmark::Counter::kInvert};
 }
 
-/// Returns the distance from the exact shape of a horizontal clamp, worked out once for each Gamma.
+/// Returns the largest distance of five points from the exact shape of a horizontal clamp, which is
+/// worked out once for each Gamma.
 double error(const Equilibrium& energy, double gamma) {
   static std::map<double, Eigen::Matrix3Xd> exact;
   const std::vector<double> s = {0.1, 0.25, 0.5, 0.75, 1};

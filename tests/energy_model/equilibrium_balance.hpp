@@ -102,9 +102,9 @@ inline std::vector<double> events_of(const energy_model::Problem& problem) {
   return events;
 }
 
-/// Computes the balance of a shape. The shape is divided into panels of Gauss-Legendre quadrature
-/// no longer than `panel`; forces and moments beyond each cut are summed from the far end to the
-/// near one.
+/// Computes the balance of a shape, without forces of obstacles, drag and loads that follow. The
+/// shape is divided into panels of Gauss-Legendre quadrature no longer than `panel`; forces and
+/// moments beyond each cut are summed from the far end to the near one.
 /// @param panel  length of a panel [m], at most about half the length over which the rod's
 /// shape changes
 inline BalanceDefects balance_of(const energy_model::Problem& problem,

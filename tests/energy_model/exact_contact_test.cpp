@@ -24,7 +24,8 @@
 namespace dlo::energy_model {
 namespace {
 
-/// Numbers of shapes with contact that were confirmed from themselves, by kind.
+/// Numbers of the shapes of `solve_energy` that were refused, have contact, or were confirmed by
+/// `solve_exact` from that shape, and of their contacts by kind.
 struct Confirmed {
   bool may_be_near_singular = false;
   double place_error = 1e-6;        // allowed for the ends of a contact
@@ -36,8 +37,9 @@ struct Confirmed {
   int points = 0;
   int several = 0;
 
-  /// Shape to 1e-8 of the length, forces and torques to 1e-7 of the largest or of the weight,
-  /// energy to 1e-8 of it.
+  /// Compares a shape with contact: points to 1e-8 of the length, directors to 1e-7, forces and
+  /// torques to 1e-7 and the energy to 1e-8 of the weight, or of the largest of 1 + weight and the
+  /// grips' forces.
   void confirm(const Problem& problem, const Equilibrium* start = nullptr) {
     // A search has a time limit, because it may not end; a solve from an initial guess always ends.
     constexpr double no_limit = std::numeric_limits<double>::infinity();

@@ -100,7 +100,8 @@ Equilibrium planar_shape(double curvature, double gamma, const Equilibrium& near
   return shape;
 }
 
-/// Returns the Gamma between a and b at which the smallest eigenvalue of the planar shape is zero.
+/// Returns the Gamma at which the smallest eigenvalue of the planar shape is zero, by the secant
+/// method from a and b.
 double critical_gamma(double curvature, double a, double b, Equilibrium shape) {
   const auto at = [&](double gamma) {
     shape = planar_shape(curvature, gamma, shape);
@@ -127,7 +128,7 @@ void expect_critical_weights(double curvature, double leaves, double returns) {
   EXPECT_NEAR(critical_gamma(curvature, above, 1.03 * returns, heavy), returns, 1e-6);
 }
 
-// Rods with natural curvature 10/l and 8/l leave their plane, and return to it, at different
+// Rods with natural curvature 10/l, 8/l and 6/l leave their plane, and return to it, at different
 // weights.
 TEST(ExactNatural, AHangingRodOf10LeavesItsPlaneAndReturns) {
   expect_critical_weights(10, 28.769705, 238.935595);
@@ -162,7 +163,8 @@ TEST(ExactNatural, BetweenTheTwoWeightsTheLowestShapeIsOutOfThePlane) {
   EXPECT_LT((all[1].sample(s).points - mirrored.points).cwiseAbs().maxCoeff(), 1e-10);
 }
 
-/// Grips that a random curve goes through, natural strains of up to two Legendre terms, sections.
+/// Returns a rod with one to three grips on a random curve that is shrunk by 5 % towards its begin,
+/// natural strains of two Legendre terms, a load and a section.
 Problem random_curved_rod(std::uint64_t number) {
   test::RandomNumbers random(9000 + number);
   const test::RandomCurve curve(random, test::RandomSpace::space);

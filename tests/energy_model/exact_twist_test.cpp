@@ -28,7 +28,7 @@
 namespace dlo::energy_model {
 namespace {
 
-/// The span of a rod between clamps that hold frames.
+/// Returns the first span of a rod between clamps.
 RodSpan span_of(const Problem& problem) { return cut_at_clamps(problem).front(); }
 
 SpanStates states_of(const std::function<RodState(double)>& state) {

@@ -278,8 +278,7 @@ TEST(Pin, CarriesTheLoadThatActsOnIt) {
 }
 
 TEST(Arch, ThatIsUnstableOutOfPlaneLeavesThePlane) {
-  // A tall arch leaves its plane. An upright rod above self-buckling whose tip is pinned above its
-  // clamp buckles in any plane.
+  // A tall arch between an upright clamp and one that points down leans out of its plane.
   Problem problem = heavy_cantilever(200, 90);
   problem.grips.push_back({1, {0.1, 0, 0}, Eigen::Vector3d(0, -1, 0)});
   const Equilibrium result = test::converged(solve_energy(problem));

@@ -21,14 +21,15 @@ inline Eigen::Matrix3d cross_product_matrix(const Eigen::Vector3d& u) {
 
 /// Result of the integration of a rod from its first grip under all forces: the final point, the
 /// remaining force and moment there, which are zero for an equilibrium, and the largest distance
-/// from the points of the shape.
+/// from the sampled points of the shape.
 struct RodEnd {
   Eigen::Vector3d point, force, moment;
   double apart = 0;
 };
 
 /// Integrates Kirchhoff's equations r' = t, R' = R hat(u), m' = n x t, n' = -w along a rod by the
-/// classical Runge-Kutta method, with the reactions of its grips and the loads.
+/// classical Runge-Kutta method, with the reactions of its grips, the weight and the forces
+/// of the loads. Couples, line loads and obstacles are not counted.
 /// @param frame  directors (d1, d2, t) at the first grip, at s = 0
 inline RodEnd integrate_kirchhoff(const energy_model::Problem& problem,
                                   const energy_model::Equilibrium& shape,

@@ -23,8 +23,8 @@ Problem with_weight_as_load(Problem problem) {
   return problem;
 }
 
-/// Returns the problem with one or two line loads of up to 0.6 (1 + Gamma), on the whole rod or on
-/// parts of it.
+/// Returns the problem with one or two line loads, of 0.6 (1 + Gamma) at both ends, on the whole
+/// rod or on parts of it.
 Problem with_random_line_loads(Problem problem, std::uint64_t seed, bool planar) {
   RandomNumbers random(seed);
   const double size = 0.6 * (1 + problem.weight_per_length.norm());
@@ -77,8 +77,8 @@ TEST(LineLoad, TendsToBeamTheoryWithTheSquareOfTheLoad) {
   }
 }
 
-/// Expects that shooting confirms the energy model's shape, and that the reactions balance the
-/// loads.
+/// Expects that the reactions of the energy model's shape balance the loads if it has converged,
+/// and that shooting has the same shape if it succeeds from there; then counts it in `confirmed`.
 void expect_confirmed(const Problem& problem, int& confirmed) {
   const Equilibrium energy = solve_energy(problem);
   if (!succeeded(energy.status)) return;

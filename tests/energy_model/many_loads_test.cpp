@@ -16,7 +16,8 @@
 namespace dlo::energy_model {
 namespace {
 
-/// The weight of a cantilever of Gamma = 12 in as many loads, each in the middle of its part.
+/// Returns a cantilever whose weight, Gamma = 12, is divided into `count` loads, each in the middle
+/// of its part.
 Problem loaded(int count) {
   Problem problem = heavy_cantilever(0, 10);
   for (int i = 0; i < count; ++i) {

@@ -13,7 +13,7 @@
 namespace dlo::energy_model {
 namespace {
 
-/// A parabola around (1, 1, ...) that throws at its third evaluation.
+/// A sum of fourth powers of the distances from 1 that throws at its third evaluation.
 struct ThrowsAtThird {
   int calls = 0;
 

@@ -39,7 +39,8 @@ Matrix3d along_x() {
 }
 
 /// Compares a solution with Kirchhoff's equations, integrated from its own reactions.
-/// @param tolerance  of the remaining moment and force at the end, divided by EI/l and EI/l^2
+/// @param tolerance  of the end point [l]; a hundred times this is allowed for the remaining force
+/// and moment at the end [EI/l^2, EI/l]
 void expect_kirchhoff(const Problem& problem, const Equilibrium& solution, const Matrix3d& frame,
                       double tolerance) {
   const test::RodEnd end = test::integrate_kirchhoff(problem, solution, frame);
@@ -76,8 +77,8 @@ TEST(NaturalRod, IsItsOwnShapeWithoutForces) {
   EXPECT_LT((point_at(clothoid, 1) - tip).norm(), 1e-12);
 }
 
-// The clamp at 0.6 is at the stress-free shape, so no force acts, however many turns that shape
-// has.
+// The clamps at 0.6 and 1 are at the stress-free shape, so no force acts, however many turns that
+// shape has.
 TEST(NaturalRod, IsFreeBetweenClampsWhereTheStressFreeShapeEnds) {
   for (const double k : {2.0, 6.0, -9.0, 14.0}) {
     SCOPED_TRACE(k);
@@ -134,8 +135,8 @@ TEST(NaturalRod, HangingLeavesItsPlaneWhereItShould) {
   }
 }
 
-/// Rods with natural strains, one and two clamps, with sections and without: all obey Kirchhoff's
-/// equations.
+/// Expects that random rods obey Kirchhoff's equations: with one and two clamps, with sections and
+/// without, with natural strains (strips also without).
 void expect_kirchhoff_of_random_rods(std::uint64_t seed, bool strip) {
   std::mt19937_64 random(seed);
   const auto uniform = [&](double low, double high) {
@@ -251,8 +252,8 @@ TEST(NaturalRod, BehindItsFirstClampIsTheSameRod) {
   EXPECT_LT((point_at(one, 0.5) - point_at(both, 0)).norm(), 1e-9);
 }
 
-/// Returns a rod whose stress-free shape is a straight shaft and two arcs; the second arc ends in
-/// the direction of the shaft.
+/// Returns a rod whose stress-free shape is a straight shaft and two arcs; the second arc ends at
+/// 0.4 rad from the direction of the shaft.
 Problem guide_wire() {
   Problem problem = clamped_rod();
   problem.natural_strains = {Vector3d::Zero()};
@@ -341,8 +342,8 @@ TEST(NaturalRod, SaysWhatItNeeds) {
   EXPECT_THROW((void)solve_energy(problem), std::invalid_argument);
 }
 
-/// The plane of the natural curvature is that of the unloaded rod, however small the load out of it
-/// is.
+/// The plane of the natural curvature is that of the rod without loads. A load of 1e-8 out of this
+/// plane does not change it; with a load of 0.1 there is none.
 TEST(NaturalNormal, IsThatOfTheSceneWithoutLoads) {
   Problem problem = clamped_rod();
   problem.natural_strains = {{0, 1, 0}};

@@ -14,7 +14,8 @@
 namespace dlo::test {
 
 /// Similarity transformation of a rod: factors of its lengths and stiffnesses, a rotation and a
-/// translation.
+/// translation. of() does not transform obstacles, line loads, couples, drag, a second or axial
+/// stiffness, and natural strains of sections.
 struct Placement {
   double length = 1;
   double stiffness = 1;
@@ -50,7 +51,8 @@ struct Placement {
     return problem;
   }
 
-  /// Largest differences of two results, in the units of the first one.
+  /// Largest differences of two results at 11 arc lengths and at the grips, in the units of the
+  /// first one.
   struct Differences {
     double points = 0, curvature = 0, energy = 0, force = 0, torque = 0;
   };

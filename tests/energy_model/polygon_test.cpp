@@ -16,7 +16,8 @@ namespace {
 
 constexpr double stiff = 4e6;  // 16 (l/d)^2 of a rod 500 diameters long, over EI/l^2
 
-/// A rod of unit length and rigidity under its weight along -y, both ends clamped `span` apart.
+/// Returns a rod of unit length and rigidity (20 for the paper's law) under its weight along -y,
+/// both ends clamped `span` apart.
 PolygonProblem between_clamps(JointLaw law, Eigen::Index points, double span, double gamma) {
   PolygonProblem problem;
   const double L = 1.0 / static_cast<double>(points - 2);

@@ -29,7 +29,7 @@ inline constexpr std::array<energy_model::Equilibrium (*)(const energy_model::Pr
 constexpr double self_buckling_gamma = 7.837347438943483;
 
 /// Returns a rod of unit length and stiffness under its weight Gamma along -y, clamped at the
-/// origin.
+/// origin in the x-y plane, at `degrees` from x towards y.
 inline energy_model::Problem heavy_cantilever(double gamma, double degrees) {
   energy_model::Problem problem;
   problem.length = 1;

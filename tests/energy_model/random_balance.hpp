@@ -68,7 +68,7 @@ inline energy_model::Problem loaded_problem(std::uint64_t number) {
   return problem;
 }
 
-/// Returns random rods that only exact solves: they stretch, are in a stream, or have a follower
+/// Returns a random rod that only exact solves: it stretches, is in a stream, or has a follower
 /// load.
 inline energy_model::Problem problem_of_exact(std::uint64_t number) {
   energy_model::Problem problem =
@@ -86,7 +86,8 @@ inline energy_model::Problem problem_of_exact(std::uint64_t number) {
   return problem;
 }
 
-/// Returns rods that touch floors and bodies: rigid ones, and in every third problem yielding ones.
+/// Returns a rod with a floor, a wall or a body that it may touch: a rigid one, or in every third
+/// problem one that yields. Returns std::nullopt if no obstacle is found.
 inline std::optional<energy_model::Problem> touching_problem(std::uint64_t number) {
   const auto seed = static_cast<unsigned>(number);
   const bool space = number % 2 == 0;
@@ -105,7 +106,7 @@ inline std::optional<energy_model::Problem> touching_problem(std::uint64_t numbe
   return problem;
 }
 
-/// Adds chain and force model for a problem that a scene file can describe.
+/// Adds the imbalances of chain and force model for a problem that a scene file can describe.
 inline void add_polygons(const std::string& name, const energy_model::Problem& problem,
                          double time_limit, std::array<LargestImbalance, 2>& polygons) {
   compare::Scene scene = compare::parse_scene(scene_text(problem, name), name + ".toml");

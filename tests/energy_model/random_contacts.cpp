@@ -3,8 +3,8 @@
 //   dlo_random_contacts [--scenes N] [--frames N] [--first K] [--time-limit SECONDS]
 // --scenes is the number of scenes of each kind, --frames that of rods between clamps that hold
 // frames. From each certified shape of the latter a polygon is relaxed; it must not find another
-// shape with less energy. Exit status: 0 if none did and no solve exceeded the limit, 1 if not, 2
-// for bad usage.
+// shape with less energy. Exit status: 0 if none did and no solve exceeded 1.5 times the limit, 1
+// if not, 2 for bad usage.
 
 #include <algorithm>
 #include <cstdio>
@@ -75,7 +75,8 @@ bool polygon_finds_lower_minimum(const Problem& problem, const Equilibrium& shap
          energy - rest.energy > least_decrease * (1 + std::abs(energy));
 }
 
-/// @return how many overran the limit, or are left by a polygon
+/// Solves scenes of one kind and prints a line of results and each fault.
+/// @return how many took more than 1.5 times the limit, or are left by a polygon
 template <class Scenes>
 int run(const Options& options, const char* kind, bool space, unsigned scenes,
         const Scenes& scene) {

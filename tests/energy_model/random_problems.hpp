@@ -186,7 +186,7 @@ inline energy_model::Problem random_held_rod(RandomNumbers& random, RandomSpace 
 /// A `curved` problem has natural strains about each axis, or about d2 only in the plane: a
 /// constant of up to 5/l, plus a part that is linear in the arc length, of up to 2/l at the ends. A
 /// clamp holds the frame of its start. Half of the problems have an interval with another section,
-/// and three quarters another clamp or pin. Gamma is between 0.1 and 300, and the weight has any
+/// and three quarters another clamp or pin. Gamma is between 0.1 and 316, and the weight has any
 /// direction. Even numbers give problems in the x-y plane.
 ///
 /// A `strip` is a curved problem, of which half are straight. Its EI about d2 is a tenth to ten

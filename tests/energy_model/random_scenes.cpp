@@ -7,7 +7,7 @@
 // Instead solves N scenes of all kinds (random_balance.hpp) with every model and prints the largest
 // imbalance of each: 0 if no solver has refused a shape because of its balance; 1 if one has.
 // Ends with 0 if no two converged shapes contradict each other, no equilibrium is out of balance
-// and no solve overran the limit; 1 if not; 2 for bad usage.
+// and no solve took more than 1.5 times the limit; 1 if not; 2 for bad usage.
 
 #include "random_scenes.hpp"
 
@@ -120,7 +120,7 @@ constexpr double largest_defect = 1e-6;
 
 /// Solves random scenes by both models and prints a summary and each fault.
 /// @return number of scenes with a fault: results that contradict each other, forces and torques
-/// that do not balance, or a solve that exceeds the time limit
+/// that do not balance, or a solve that exceeds 1.5 times the time limit
 int run(const Options& options, RandomSpace space, std::uint64_t count) {
   const char* kind = dlo::test::name_of(space);
   if (count == 0) return 0;

@@ -19,7 +19,7 @@ namespace dlo::test {
 
 /// Comparison of two solutions of one problem.
 enum class Agreement {
-  same,         ///< equal points to 1e-8 l everywhere
+  same,         ///< equal points to 1e-8 l at 101 arc lengths
   image,        ///< the same curvature and energy: a mirror image, or rotated about a free axis
   both_stable,  ///< two different equilibria, each proven stable
   contradict,   ///< none of these
@@ -103,8 +103,8 @@ inline bool has_clamp_without_frame_between(const energy_model::Problem& problem
   return first < last && !std::all_of(first, last, holds);
 }
 
-/// Solves a problem by both models and compares the results. A problem that exact refuses counts as
-/// not converged in it.
+/// Solves a problem by both models and compares the results. A round straight rod with a clamp
+/// without a frame between clamps that hold frames, which exact refuses, counts as failed in it.
 /// @param time_limit  of each solve [s]
 inline ComparedScene compare_models(std::uint64_t number, const energy_model::Problem& problem,
                                     double time_limit, ExactFrom from = ExactFrom::search) {
@@ -130,7 +130,8 @@ inline ComparedScene compare_models(std::uint64_t number, const energy_model::Pr
   return scene;
 }
 
-/// Returns the problem as a scene file of dlo, to run it by hand.
+/// Returns a round rod with weight along -y as a scene file of dlo, to run it by hand. Obstacles,
+/// sections, natural strains, couples, line loads and given d1 are not written.
 inline std::string scene_text(const energy_model::Problem& problem, const std::string& name) {
   // A rod of 10 mm with this modulus has EI = 1 N m^2; its density makes the weight.
   constexpr double pi = 3.14159265358979323846;

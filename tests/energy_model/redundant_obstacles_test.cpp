@@ -1,4 +1,5 @@
-// Tests of rods on two rigid obstacles, one within the other, with flush or separate surfaces.
+// Tests of rods on two or more rigid obstacles, one within the other, with flush or separate
+// surfaces.
 
 #include <gtest/gtest.h>
 

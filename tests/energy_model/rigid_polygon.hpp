@@ -37,7 +37,7 @@ class RigidPolygon {
     for (Eigen::Index i = 0; i < points_.cols(); ++i) {
       points_(0, i) = (static_cast<double>(i) - 0.5) * segment_;
     }
-    // For the fastest vibration, omega = 4 / segment^2, tau omega^2 dt stays below 1.
+    // For the fastest vibration, omega = 4 / segment^2, tau omega^2 dt is at most 1.
     if (around_.material_damping > 0) {
       step_ = std::min(step_, std::pow(segment_, 4) / (16 * around_.material_damping));
     }

@@ -104,7 +104,8 @@ TEST(SoftContact, AThinPegIsDetectedBetweenTwoSamples) {
   }
 }
 
-/// Returns a rod with one clamp, or a clamp and a pin, above or next to one obstacle that yields.
+/// Returns a rod with one clamp, or a clamp and a pin, and one obstacle that yields,
+/// into which the rod would reach without it.
 Problem random_scene(int seed) {
   using obstacle::Body;
   std::mt19937 random(static_cast<unsigned>(seed));
@@ -140,9 +141,9 @@ Equilibrium relax_after_disturbance(const Problem& problem, const Equilibrium& s
   return solve_energy(problem, {.start = &aside});
 }
 
-// Every equilibrium, stable or not, is stationary: if an obstacle is moved, only its contact force
-// does work. The list contains no equilibrium twice. A stable one returns after a push out of the
-// plane, in which a round obstacle can lose the rod.
+// The lowest equilibrium is stationary: if the obstacle is moved, only its contact force does work.
+// The list contains no equilibrium twice. After a push out of the plane, in which a round obstacle
+// can lose the rod, a stable one does not come to rest with less energy.
 TEST(SoftContact, RandomScenesListEachEquilibriumOnceWithTheForceOfItsEnergy) {
   constexpr int scenes = 10;
   // The errors of the shapes change energies by about 1e-9.

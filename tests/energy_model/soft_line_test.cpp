@@ -32,7 +32,7 @@ Problem between_pins(double stiffness, const Vector3d& end) {
   return problem;
 }
 
-/// Returns a line between clamps that rotate it out of its plane.
+/// Returns a line between clamps whose directions are out of the plane of the catenary.
 Problem between_clamps(double stiffness) {
   Problem problem = between_pins(stiffness, {0.7, 0.1, 0.2});
   problem.grips[0].direction = Vector3d(0.3, 1, 0.4);
@@ -45,7 +45,7 @@ double largest_line_distance(const Equilibrium& a, const Equilibrium& b) {
   return test::largest_point_distance(a, b, equal_arc_lengths(1, 501));
 }
 
-// A catenary does not include a stream, nor follower loads of a line that is pulled straight.
+// Neither a catenary nor a line that is pulled straight includes a stream.
 TEST(SoftLine, IsNoneOfLoadsWithoutAPotential) {
   Problem dragged = between_pins(1e-12, {0.7, 0, 0.1});
   dragged.drag = Drag{.velocity = {0, 1, 0}, .normal = 0.2};
@@ -167,7 +167,7 @@ TEST(SoftLine, LiftsOffAsTheRodDoes) {
   EXPECT_NEAR(soft->contacts[0].end_force / rod.contacts[0].end_force, 1, 0.05);
 }
 
-// A rod that is pulled straight along (3, 4, 0), 1e10 l from the origin: its ends are numbers of
+// A rod that is pulled straight along (3, 4, 0), 1e10 m from the origin: its ends are numbers of
 // double precision there, but the point at which its load acts is rounded by up to 1e-6, so that
 // the moments do not balance.
 TEST(LineWithoutSearch, IsNotVerifiedWhereItsForcesDoNotBalance) {

@@ -134,7 +134,7 @@ Span free_strip_span(bool planar) {
   return span;
 }
 
-/// Returns the span with line loads in addition to the weight, two of which overlap.
+/// Returns the span with two line loads that overlap, in addition to the weight.
 Span line_loaded_span(bool planar) {
   const double z = planar ? 0 : 1;
   Span span = gripped_span(planar);
@@ -142,7 +142,7 @@ Span line_loaded_span(bool planar) {
   return span;
 }
 
-/// Returns an intrinsically curved span with a couple and a force, free to rotate at its start.
+/// Returns an intrinsically curved span with two couples and a force, free to rotate at both ends.
 Span span_with_couple(bool planar) {
   Span span = free_natural_span(planar);
   span.loads[0].couple = 3;

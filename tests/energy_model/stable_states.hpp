@@ -42,7 +42,8 @@ class StableStates {
     return problem;
   }
 
-  /// Returns converged shapes, found from polygons, without duplicates.
+  /// Returns converged shapes that are near polygons from which they were found, without
+  /// duplicates.
   [[nodiscard]] std::vector<energy_model::Equilibrium> find(const energy_model::Problem& problem,
                                                             int starts) {
     std::vector<Eigen::VectorXd> polygons;
@@ -102,8 +103,8 @@ class StableStates {
     return angles;
   }
 
-  /// Returns a local minimum of bending and gravity, with the end held by a spring of increasing
-  /// stiffness.
+  /// Returns a local minimum of bending and gravity, with a gripped end held by a spring of
+  /// increasing stiffness. Returns std::nullopt if the minimisation fails.
   [[nodiscard]] std::optional<Eigen::VectorXd> relaxed(const energy_model::Problem& problem,
                                                        Eigen::VectorXd angles) const {
     // The angle at the last clamp is the one nearest to the last angle of the initial guess, modulo

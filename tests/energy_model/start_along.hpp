@@ -12,7 +12,8 @@
 
 namespace dlo::test {
 
-/// Returns an initial guess of unit length along a line from corner to corner.
+/// Returns an initial guess for a rod of unit length along a line from corner to corner. Arc
+/// lengths from 0 to 1 are scaled to the length of the line.
 inline energy_model::Equilibrium start_along_polyline(const std::vector<Eigen::Vector3d>& corners) {
   std::vector<double> at = {0};
   for (std::size_t i = 1; i < corners.size(); ++i) {

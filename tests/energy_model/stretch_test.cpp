@@ -72,7 +72,7 @@ TEST(Stretch, OfALineIsTheElasticCatenarys) {
   EXPECT_NEAR(tension[1] / closed, 1, 1e-3);
 }
 
-/// theta, m, x, y by s in the plane, with the force on the section; fourth order Runge and Kutta.
+/// Rates of theta, m, x and y by s in the plane, of a rod that stretches.
 struct PlanarStep {
   double EI, EA, w;
   Eigen::Vector2d begin_force;  // n at s = 0

@@ -53,7 +53,7 @@ Problem round_rod(Problem of, double stiffness) {
   return of;
 }
 
-/// Returns strips that are held in ways in which a round rod can be held too.
+/// Returns strips of two equal stiffnesses, held in ways in which a round rod can be held too.
 std::vector<Problem> held_strips() {
   std::vector<Problem> problems;
   Problem problem = strip(1, 1);
@@ -92,8 +92,8 @@ TEST_P(BothModels, EqualStiffnessesAreARoundRod) {
   }
 }
 
-// The result does not depend on which axis is perpendicular to the plane, nor on which end is
-// clamped.
+// A strip in a plane is the round rod of its stiffness about the axis across the plane, whichever
+// axis this is and whichever end is clamped.
 TEST_P(BothModels, InAPlaneIsTheRoundRodOfItsStiffnessThere) {
   constexpr double B1 = 2.5;
   constexpr double B2 = 0.7;

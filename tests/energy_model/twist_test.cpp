@@ -17,7 +17,7 @@
 namespace dlo::energy_model {
 namespace {
 
-/// Two clamps that face each other, `distance` apart on a line, the second turned by `roll`.
+/// Returns a rod between two clamps along one line, `distance` apart, the second rolled by `roll`.
 Problem turned_rod(double distance, double roll, double weight) {
   return test::framed_clamps(weight, distance, 0.75, roll);
 }

@@ -1,6 +1,6 @@
 // Tests of rods on rigid obstacles between clamps that hold their frames, and of rods with material
-// directors there: balance, derivatives of the energy by the positions of grips, and elastic
-// polygons.
+// directors there: balance, derivatives of the energy by the floor's height and a clamp's roll,
+// and elastic polygons.
 
 #include <gtest/gtest.h>
 
@@ -52,7 +52,7 @@ double energy_rate(const Make& make, double at) {
          (2 * h);
 }
 
-/// Checks the balance with contacts at points replaced by loads.
+/// Returns the balance with contacts replaced by loads; expects that all contacts are at points.
 test::BalanceDefects balance_with_contacts(Problem problem, const Equilibrium& shape) {
   for (const ContactPart& contact : shape.contacts) {
     EXPECT_NE(contact.kind, ContactKind::lying);

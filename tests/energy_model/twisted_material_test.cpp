@@ -1,6 +1,6 @@
 // Tests of the material director d1 of a round straight rod that clamps twist: it agrees with the
-// clamps, is perpendicular to the tangent, and rotates at a constant rate relative to a frame that
-// is transported without twist.
+// clamps, is perpendicular to the tangent, and rotates at a rate that is constant in each section,
+// relative to a frame that is transported without twist.
 
 #include <gtest/gtest.h>
 

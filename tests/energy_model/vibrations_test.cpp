@@ -255,7 +255,8 @@ TEST(Vibrations, AboutHeavyShapesMeetTheLinearisedEquations) {
   }
 }
 
-// Beyond self-buckling the straight vertical rod is unstable; below it the frequency tends to zero.
+// Beyond self-buckling the straight vertical rod is unstable; below it the frequency decreases with
+// the weight.
 TEST(Vibrations, OfAnUprightRodStopWhereItBuckles) {
   const double buckles = test::self_buckling_gamma;
   double before = 1e9;
