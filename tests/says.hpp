@@ -9,7 +9,7 @@
 
 namespace dlo::test {
 
-/// Whether a text has each of these parts; if not, which it lacks.
+/// Whether a text has each of these parts; the failure names the first that it lacks.
 inline testing::AssertionResult has_all(const std::string& text,
                                         const std::vector<std::string>& parts) {
   for (const std::string& part : parts) {
@@ -20,7 +20,7 @@ inline testing::AssertionResult has_all(const std::string& text,
   return testing::AssertionSuccess();
 }
 
-/// Whether a text has none of these parts; if not, which it has.
+/// Whether a text has none of these parts; the failure names the first that it has.
 inline testing::AssertionResult has_none(const std::string& text,
                                          const std::vector<std::string>& parts) {
   for (const std::string& part : parts) {
