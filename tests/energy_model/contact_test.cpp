@@ -158,7 +158,8 @@ TEST(Contact, ReversedRodRestsAsTheOther) {
   }
 }
 
-// A search that reaches its time limit at any stage returns finite numbers.
+// A search that reaches its time limit at any stage returns finite reactions, and its message names
+// the limit.
 TEST(Contact, EndsWithNumbersWheneverTheTimeEnds) {
   Problem problem;
   problem.length = 1;

@@ -110,7 +110,7 @@ TEST(Dynamics, GoesOnFromTheShapeAndTheVelocitiesOfAMotion) {
 }
 
 // Extrapolated from 90, 135 and 180 segments, the polygon would agree to 1.1e-6 (Gamma 1) and
-// 1.0e-5 (Gamma 10).
+// 1.0e-5 (Gamma 10). The test extrapolates from 40 and 80 and allows 1e-5 and 4e-5.
 TEST(Dynamics, ReleasedCantileverMovesAsAPolygonAndAsWithMoreTermsAndSmallerSteps) {
   const std::vector<double> times = equal_times(10, 0.1);
   for (const auto& [gamma, allowed] : {std::pair(1.0, 1e-5), std::pair(10.0, 4e-5)}) {
@@ -318,7 +318,8 @@ TEST(Dynamics, SquaredDragIsAcrossTheRod) {
 
 // A clamp approaches and rotates at a constant rate. If the rod starts with the rates of its
 // equilibrium shapes, its distance from them is proportional to the square of the speed; if it
-// starts without velocity, it vibrates about them.
+// starts without velocity, it vibrates about them. The first distance has to be less than 3 % of
+// the second.
 TEST(Dynamics, InMotionItFollowsItsShapesAtRestFromTheBegin) {
   MovingRod rod = rod_between_clamps(5);
   constexpr double speed = 0.005;

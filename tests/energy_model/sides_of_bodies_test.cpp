@@ -42,7 +42,8 @@ Equilibrium confirmed(const Problem& problem, const Equilibrium& rod) {
   return test::converged(solve_exact(problem, {.start = &rod}));
 }
 
-/// The stable equilibrium of a list that is the same as another one; null: there is none.
+/// Returns the stable equilibrium of a list that is the same as another one to 1e-6; null: there is
+/// none.
 const Equilibrium* find_stable(const std::vector<Equilibrium>& list, const Equilibrium& wanted) {
   const auto found = std::find_if(list.begin(), list.end(), [&](const Equilibrium& other) {
     return succeeded(other.status) && test::largest_point_distance(other, wanted) < 1e-6;

@@ -62,8 +62,8 @@ Span span_on_obstacle(bool planar) {
   return span;
 }
 
-/// Returns the span on a rigid obstacle, with a contact at one point and a contact interval up to a
-/// load and beyond.
+/// Returns the span on a rigid obstacle, with a contact at one point and a contact interval across
+/// a load.
 Span touching_span(bool planar) {
   const double z = planar ? 0 : 0.3;
   Span span = gripped_span(planar);
@@ -74,7 +74,8 @@ Span touching_span(bool planar) {
   return span;
 }
 
-/// Returns the span in contact with a peg; beyond the load a point contact holds it.
+/// Returns the span in contact with a peg: at a point, along an interval across the load, and
+/// beyond it at a point that does not slide.
 Span span_on_peg(bool planar) {
   const double z = planar ? 0 : 0.3;
   Span span = gripped_span(planar);

@@ -19,7 +19,7 @@ using force_model::Rod;
 using force_model::StepOptions;
 using force_model::Stepper;
 
-/// Length of the rods below [m].
+/// Mean length of the rods below [m].
 inline constexpr double length = 0.5;
 
 enum class Walls { none, two };

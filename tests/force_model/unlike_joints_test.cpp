@@ -76,7 +76,7 @@ TEST(NaturalTurns, AreThoseOfTheStressFreeShapeWithoutForceAndEnergy) {
   Eigen::Matrix3Xd forces = Eigen::Matrix3Xd::Zero(3, n + 1);
   add_bending_forces(points, rest, bending, forces);
   // The forces are the rounding error of couples that cancel: eps times the largest couple, divided
-  // by the length of the shortest segment.
+  // by the length of the shortest segment. 36 eps are allowed.
   double couple = 0;
   for (Eigen::Index i = 1; i < n; ++i) {
     const double L = (rest[i - 1] + rest[i]) / 2;
