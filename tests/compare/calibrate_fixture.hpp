@@ -20,7 +20,8 @@ class CalibrateCommand : public Command {
         "\", density = 1200 }\n";
     return write(name, rod + gripper_text(fmt::format("direction = \"{} deg\"", angle)) + more);
   }
-  /// Writes the exact shape of a scene, without arc lengths, and returns the file's name.
+  /// Writes 9 points of the exact shape of a scene file, without arc lengths, and returns the path
+  /// of the written file.
   std::string write_exact_shape(const std::string& scene, const std::string& name) {
     return write_table(name, "x,y,z", solved_points(scene + " --model exact --samples 9"));
   }

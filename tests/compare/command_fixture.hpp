@@ -31,10 +31,10 @@ struct Outcome {
   std::string err;
 };
 
-/// Fixture that runs the command in a private folder.
+/// Fixture that runs the command, with a private folder for its files.
 class Command : public Folder {
  protected:
-  /// Returns words joined by blanks.
+  /// Returns the words, each followed by a blank.
   static std::string words(std::initializer_list<std::string> list) {
     std::string line;
     for (const std::string& word : list) line.append(word).append(" ");
@@ -73,7 +73,7 @@ class Command : public Folder {
   /// Runs a command for the files that it writes, and expects exit status 0.
   void succeeds(const std::string& arguments) const { (void)output_of(arguments); }
 
-  /// Returns the document that a command writes.
+  /// Returns the document that a command prints with --format json, and expects this exit status.
   [[nodiscard]] nlohmann::json json_of(const std::string& arguments, int status = 0) const {
     const Outcome result = run(arguments + " --format json");
     EXPECT_EQ(result.status, status) << arguments << "\n" << result.err;
@@ -122,7 +122,8 @@ class Command : public Folder {
     return run_line(std::string(DLO_COMMAND) + " " + arguments);
   }
 
-  /// Runs any line of a shell that is a single command.
+  /// Runs a line in a shell. Outcome::err has the standard error of the line's last command only;
+  /// the status is -1 if a signal ends the shell.
   [[nodiscard]] Outcome run_line(const std::string& command) const {
     const std::string line = command + " 2>" + path("stderr");
     std::FILE* pipe = ::popen(line.c_str(), "r");

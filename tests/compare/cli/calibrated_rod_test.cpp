@@ -71,8 +71,8 @@ class CalibratedCommand : public dlo::test::Command {
   }
 };
 
-/// Two clamps that point 8 degrees off determine a rod that predicts the shape of a third one,
-/// which is compared and does not change the rod.
+/// Two shapes whose clamp points 8 degrees off determine a rod and a clamp error, which predict a
+/// third shape to an RMS of 1e-5 m.
 TEST_F(CalibratedCommand, AHoldOutShapeIsPredicted) {
   std::string scenes;
   for (const std::string direction : {"-40", "10", "50"}) {

@@ -22,7 +22,7 @@ using nlohmann::json;
 class CheckCommand : public Command {
  protected:
   std::string shape(const std::string& text) { return write("shape", text); }
-  /// Writes a rod whose first end is clamped level.
+  /// Writes the scene of a rod whose first end is clamped level, and returns its path.
   std::string level_rod(double length, double stiffness, double mass_per_length) {
     return scene(fmt::format("[rod]\nlength = {}\nbending_stiffness = {}\nmass_per_length = {}\n",
                              length, stiffness, mass_per_length) +
@@ -227,8 +227,8 @@ TEST_F(CheckCommand, AWrongUnitIsNoPass) {
   EXPECT_LT(document.at("seen").at("share").get<double>(), 0.01);
   succeeds(check + " --unit mm --tolerance 1% --min-seen 0.01%");
   succeeds(check + " --tolerance 1%");
-  // A file with arc lengths beyond the rod is refused; a file without arc lengths fails and gets a
-  // hint.
+  // A file with arc lengths beyond the rod is refused. A file without arc lengths gets a hint; the
+  // exit status is 0 because no tolerance is given.
   expect_error("check " + steel() + " --shape " + shape("x,y,s\n0,0,0\n-500,0,500\n"), 2,
                {"s = 500 m", "--unit"});
   for (std::vector<double>& row : points) {

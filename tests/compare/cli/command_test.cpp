@@ -152,7 +152,8 @@ TEST_F(Command, TheExtensionIsTheFormatUnlessOneIsGiven) {
   EXPECT_EQ(first_line("calibrate " + steel(), "c.json"), "{");
 }
 
-/// Returns words that give an option, with a value that the option takes.
+/// Returns words that give an option, with a value that the option takes, or the option alone if
+/// the list has no value for it. For SCENE it returns a file name.
 std::string with_value(const std::string& option) {
   static const std::string examples =
       "--arc-lengths file --unit mm --segments 8 --shape a.csv --motion a.csv "
@@ -169,7 +170,7 @@ std::string with_value(const std::string& option) {
   return examples.substr(at, examples.find(' ', at + option.size() + 1) - at);
 }
 
-/// Words of a command with which all conditions of a row hold.
+/// Returns the words of a command with which all conditions of a row hold.
 std::string with_conditions(const std::string& command, const dlo::cli::IneffectiveOptions& row,
                             const std::string& scene) {
   const std::map<std::string, std::string> arguments = {

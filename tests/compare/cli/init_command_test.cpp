@@ -43,7 +43,7 @@ TEST_F(Command, WithoutArgumentsTellsWhatThereIsToDo) {
   EXPECT_EQ(result.status, 0);
   EXPECT_EQ(result.err, "");
   EXPECT_EQ(result.out, run("--help").out);
-  // Headings in the order in which a user needs them, each with its commands.
+  // Headings in the order in which a user needs them, each followed by its first command.
   const std::regex order(
       "\nBegin\n  init [^]*\nSee a shape\n  solve [^]*\nIs my simulator's shape right\\?\n  check "
       "[^]*\nGet parameters\n  calibrate [^]*\nKeep it from getting worse\n  regress ");

@@ -34,7 +34,8 @@ class MotionCommand : public dlo::test::Command {
         "position = [0.1, 0.02, 0]}}]\n",
         stiffness);
   }
-  /// Markers at a quarter, half, three quarters and the end of the rod with inertia.
+  /// Writes 40 times per second the positions of markers at a quarter, half, three quarters and the
+  /// end of the rod with inertia. Their times are increased by `late` [s].
   void write_markers(const std::string& name, double late = 0) const {
     const json document = json_of(words({"track", path("swung.toml"),
                                          "--no-force --dynamic --damping 0.01 --frame-rate 40 "
@@ -130,7 +131,7 @@ TEST_F(MotionCommand, MeasuredPosesAreSmoothedBelowTheirCutoff) {
       words({"track", path("smooth.toml"), "--no-force --from 0.5 --to 1.5 --frame-rate 37"}));
   for (const json& frame : document.at("frames")) {
     // The filter reduces the alternating error of the rows by the gain 1 / (1 + (sqrt(2) - 1) /
-    // sin(pi / 20)^4), about 0.001.
+    // sin(pi / 20)^4), about 0.0014.
     EXPECT_NEAR(frame.at("grippers").at(0).at("position_m").at(0),
                 0.1 * frame.at("time_s").get<double>(), 2e-6);
   }
@@ -192,7 +193,7 @@ TEST_F(MotionCommand, CalibrateReportsAStiffnessThatIsNotIdentifiedWithExitStatu
 TEST_F(MotionCommand, ARecordingIsAStartForTrack) {
   write_markers("markers.csv");
   const std::string released = swung(0.02) + "[track]\nstart = \"start.csv\"\n";
-  // The recording from time 0.1 s on. Its start values continue the motion of the whole recording.
+  // The start is the recording from time 0.1 s on, and so the track begins at 0.1 s.
   std::string later = "time,s,x,y,z\n";
   std::istringstream rows(read(path("markers.csv")));
   std::string row;

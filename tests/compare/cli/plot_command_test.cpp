@@ -14,8 +14,8 @@ using testing::StartsWith;
 
 class PlotCommand : public test::Command {
  protected:
-  /// Runs with --plot into an SVG or PNG, and checks that standard output is the same as without
-  /// it.
+  /// Runs with --plot into an SVG, PNG or PDF, and checks the picture, and that exit status and
+  /// standard output are the same as without it.
   void expect_picture(const std::string& arguments, const std::string& file) const {
     const Outcome plain = run(arguments);
     const Outcome drawn = run(arguments + " --plot " + path(file));

@@ -19,7 +19,7 @@ using testing::HasSubstr;
 class ProgramCommand : public dlo::test::Command {
  protected:
   static std::string cable() { return std::string(DLO_DATA) + "/scenes/cable.toml"; }
-  /// Returns the example, a chain of hinges.
+  /// Returns the option --with that runs the example, a chain of hinges, under this name.
   static std::string hinges(const std::string& name) {
     return " --with " + name + "='/usr/bin/python3 " + DLO_DATA +
            "/../compare/example/foreign/hinges.py {scene} {points} {shape}' ";

@@ -24,7 +24,7 @@ class RegressCommand : public dlo::test::Command {
     succeeds(arguments_ + steel() + " --update");
   }
 
-  /// Replaces the number behind a key of the baseline.
+  /// Replaces the number behind the first occurrence of a key in the baseline.
   void set(const std::string& key, const std::string& number) const {
     std::string text = read(path("b.toml"));
     const std::size_t begin = text.find(key + " = ") + key.size() + 3;

@@ -20,7 +20,7 @@ class RodCommand : public dlo::test::Command {
  protected:
   static std::string hose() { return std::string(DLO_DATA) + "/scenes/spring_hose.toml"; }
 
-  /// Returns a rod that is given by EI and mass per length.
+  /// Writes the scene of a rod that is given by EI and mass per length, and returns its path.
   std::string by_stiffness(const std::string& EI) {
     return write("rod.toml",
                  "[rod]\nlength = 1\nmass_per_length = \"45 g/m\"\nbending_stiffness = " + EI +

@@ -96,7 +96,8 @@ nlohmann::json without_tolerance_fields(nlohmann::json document) {
   return document;
 }
 
-// Neither the search for causes nor the tolerance changes a number or a pass.
+// The search for causes does not change the verdict. Neither the search nor the tolerance changes
+// the fields that do not depend on the tolerance.
 TEST_F(SameVerdict, HasTheSameNumbersWhateverIsAllowed) {
   const std::string file = std::string(DLO_DATA) + "/scenes/spring_steel_175.toml";
   const Scene scene = compare::load_scene(file);

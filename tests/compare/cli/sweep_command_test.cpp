@@ -17,7 +17,7 @@ using dlo::test::has_all;
 
 class SweepCommand : public dlo::test::Command {
  protected:
-  /// A sweep of 50 rows, which is in whole.csv; and how its parts map.*.csv are put together.
+  /// Writes a sweep of 50 rows to whole.csv.
   void SetUp() override {
     Command::SetUp();
     succeeds(sweep + " -o " + path("whole.csv"));
@@ -65,7 +65,8 @@ std::string arc_text(double curvature) {
   return text;
 }
 
-/// A rod without weight is its rest shape; all of its files are beside the scene.
+/// The rod has no weight, so its shape is the rest shape. All files that the scene names are beside
+/// it.
 const std::string scene_with_files =
     "gravity = [0, 0, 0]\n[rod]\nlength = 0.3\nbending_stiffness = 1\nmass_per_length = 0.1\n"
     "rest_shape = \"a.csv\"\n[[gripper]]\nat = 0\ndirection = [1, 0, 0]\ntrajectory = "

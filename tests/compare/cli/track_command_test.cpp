@@ -88,7 +88,8 @@ TEST_F(OutputsOverInputs, NoFileIsAmongTheFramesOfASeries) {
                    "is written too");
   std::filesystem::create_hard_link(path("move.csv"), path("m_00003.vtk"));
   expect_untouched(track("m_00001.toml", series), "move.csv", "is read too");
-  // These names do not collide with frames: one has another stem, one has too few digits.
+  // These names are not those of frames: m_00001.toml has another extension, m_0001.vtk has too few
+  // digits.
   std::filesystem::remove(path("m_00003.vtk"));
   const std::string beside = output_of(track("m_00001.toml", series + " -o " + path("m_0001.vtk")));
 }

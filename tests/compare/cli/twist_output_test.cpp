@@ -17,7 +17,7 @@ using dlo::test::Outcome;
 using nlohmann::json;
 using std::numbers::pi;
 
-/// The command on the scene that comes with it.
+/// Fixture with the scene twisted_wire.toml of data/scenes.
 class TwistCommand : public dlo::test::Command {
  protected:
   static std::string wire() { return std::string(DLO_DATA) + "/scenes/twisted_wire.toml"; }
