@@ -15,7 +15,8 @@
 
 namespace dlo::test {
 
-/// Returns `count` uneven arc lengths on a rod [m], no two closer than 2 % of its length.
+/// Returns `count` uneven arc lengths on a rod [m] in ascending order, no two closer than 2 % of
+/// its length.
 inline std::vector<double> uneven_arc_lengths(std::mt19937& random, int count, double length) {
   std::uniform_real_distribution<double> anywhere(0, length);
   std::vector<double> s;
@@ -45,7 +46,8 @@ inline Eigen::Matrix3Xd with_noise(Eigen::Matrix3Xd points, double sigma, std::m
   return points;
 }
 
-/// Returns noise that is correlated over an arc length: a first-order autoregression.
+/// Returns noise of standard deviation `sigma` per coordinate that is correlated over the arc
+/// length `length` [m]: a first-order autoregression.
 inline Eigen::Matrix3Xd correlated_noise(const std::vector<double>& s, double sigma, double length,
                                          std::mt19937& random) {
   std::normal_distribution<double> normal(0, sigma);
@@ -72,7 +74,7 @@ inline compare::MeasuredShape reversed(const compare::MeasuredShape& shape) {
   return result;
 }
 
-/// Returns the exact shape of a scene at these arc lengths.
+/// Returns the exact shape of a scene at these arc lengths, which the result does not contain.
 inline compare::MeasuredShape exact_shape(const compare::Scene& scene,
                                           const std::vector<double>& s) {
   const energy_model::Equilibrium exact = compare::solve_reference(scene, compare::Model::exact);

@@ -8,7 +8,9 @@
 
 namespace dlo::test {
 
-/// Returns a rod of 1 m under its weight along -y, clamped at the origin.
+/// Returns a rod of 1 m under its weight along -y, clamped at the origin at an angle of `degrees`
+/// from +x towards +y.
+/// @param gamma  weight divided by bending stiffness, w l^3 / (EI)
 inline compare::Scene heavy_scene(double gamma, double degrees) {
   compare::Scene scene;
   scene.name = "heavy";

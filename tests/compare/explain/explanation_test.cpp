@@ -192,7 +192,8 @@ TEST(Explanation, NamesAnotherTorsionalStiffness) {
   EXPECT_LT(named->rms_m, 1e-4);
 }
 
-/// Returns a rod between two grippers 0.7 l apart, held as given: "hold = \"pin\"" or a direction.
+/// Returns a rod of 1 m whose ends are at (0, 0, 0) and (0.7, 0.1, 0) m, held as given: "hold =
+/// \"pin\"" or a direction.
 Scene gripped_rod(const std::string& first, const std::string& last) {
   return parse_scene(
       "[rod]\nlength = 1\nbending_stiffness = 0.05\nmass_per_length = 0.5\n[[gripper]]\nat = "

@@ -55,7 +55,8 @@ struct JudgedShape {
   std::vector<compare::Explanation> explanations;
 };
 
-/// Judges a shape without a search for E*, and explains it if it fails.
+/// Judges a shape without a search for E*, and explains it if it fails as a rod, even if it passes
+/// as a chain.
 /// @param share    allowed deviation divided by the length [-]
 /// @param largest  whether the largest deviation is judged, not the RMS
 inline JudgedShape judge_shape(const compare::Scene& scene, const compare::MeasuredShape& shape,
@@ -72,8 +73,8 @@ inline JudgedShape judge_shape(const compare::Scene& scene, const compare::Measu
   return outcome;
 }
 
-/// Expects that the shape fails, and that the best explanation contains these words and leaves less
-/// than a tenth of the tolerance.
+/// Expects that the shape fails for a tolerance of 1 % of the length, that the best explanation and
+/// the reason contain these words, and that the best explanation leaves an RMS below `left_m`.
 inline void expect_cause(const std::string& what, const compare::Scene& scene,
                          const compare::MeasuredShape& shape, const std::vector<std::string>& words,
                          double left_m = 1e-3) {

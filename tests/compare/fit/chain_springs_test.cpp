@@ -46,8 +46,8 @@ TEST(ChainSprings, OfAStiffRodWithALoadAtItsTipTheyAreThoseOfBeamTheory) {
   }
 }
 
-// A hinge at the clamp is too soft by as much as a welded segment is too stiff, both with first
-// order in h. A clamp in the middle of a segment has second order.
+// A hinge at the clamp is too soft and a welded segment is too stiff, both with first order in h. A
+// clamp in the middle of a segment has second order.
 TEST(ChainSprings, TheOrderInTheSegmentIsThatOfTheClamp) {
   const Scene scene = test::heavy_scene(8, 20);
   const auto coarse = springs_of(scene, 16);
@@ -76,8 +76,8 @@ const std::vector<double>& unequal_lengths() {
   return lengths;
 }
 
-// In another solver of chains the printed springs leave the reported error, and no multiple of them
-// leaves less.
+// In another solver of chains the printed springs leave the reported error within 20 %. With 0.9
+// and 1.1 times these springs the error is more than 1.2 times as large.
 TEST(ChainSprings, OfUnequalSegmentsTheyBringAnotherSolversChainToTheRod) {
   const Scene scene = test::heavy_scene(12, 0);
   const std::vector<double>& lengths = unequal_lengths();
@@ -153,7 +153,7 @@ TEST(ChainSprings, OfASoftRopeEachLawHasItsOwnStiffness) {
   }
 }
 
-// A plain chain does not model twist, sections and the like.
+// A plain chain does not model natural curvature.
 TEST(ChainSprings, ARodThatIsNoPlainChainHasNone) {
   Scene scene = test::heavy_scene(5, 0);
   scene.natural_strain.y() = 1;

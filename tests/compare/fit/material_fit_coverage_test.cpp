@@ -52,11 +52,12 @@ Tally fit_random_shapes(int draws, const Scene& scene, double truth, const Seen&
 
 class MaterialFitCoverage : public testing::TestWithParam<std::tuple<double, PoseFreedom>> {};
 
-// Each draw is the exact shape at 7 uneven points, reversed, moved, with noise of 0.1 % of the
-// length. A correct interval of 95 % misses the truth in about 5 of 100 draws; in more than 10 with
-// probability 1/87, and in none with probability 1/170. With an unknown frame and without arc
-// lengths the interval may be wider, because the rod's ends bound how far the points slide along
-// it, and because several optima count. The modulus of the fitted scene is not the true one.
+// Each draw is the exact shape at 7 uneven points, reversed, with noise of 0.1 % of the length, and
+// moved if the frame is unknown. A correct interval of 95 % misses the truth in about 5 of 100
+// draws; in more than 10 with probability 1/87, and in none with probability 1/170. With an unknown
+// frame and without arc lengths the interval may be wider, because the rod's ends bound how far the
+// points slide along it, and because several optima count. The modulus of the fitted scene is not
+// the true one.
 TEST_P(MaterialFitCoverage, IntervalHoldsTheTruthInNineOfTenDraws) {
   const auto& [gamma, freedom] = GetParam();
   const bool known = freedom == PoseFreedom::known;

@@ -204,7 +204,7 @@ TEST(Solve, AllModelsAgreeOnForcesAndEnergies) {
 }
 
 TEST(Solve, TorquesAreAboutTheGripperWhereverItIs) {
-  const Eigen::Vector3d away(3, -2, 1.5);  // six lengths: a lever from the origin is far off
+  const Eigen::Vector3d away(3, -2, 1.5);  // four lengths: a lever from the origin is far off
   Scene one = heavy_scene(1, -20);
   one.force_model.points = 16;
   one.force_model.c_c = one.axial_stiffness() / 1000;

@@ -14,7 +14,7 @@
 namespace dlo::compare {
 namespace {
 
-/// A rod that leaves its clamp level at this height over a floor.
+/// Returns a rod that leaves its clamp level at this height [m] over a floor.
 Scene rod_over_floor(double gamma, double height) {
   Scene scene = heavy_scene(gamma, 0);
   scene.grippers.front().position.y() = height;

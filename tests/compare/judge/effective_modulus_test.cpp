@@ -17,7 +17,7 @@
 namespace dlo::compare {
 namespace {
 
-/// Returns the rod without weight.
+/// Returns 12 points of the rod without weight.
 Shape straight(const Scene& scene) {
   const std::vector<double> s = equal_arc_lengths(1, 12);
   return {s, straight_rod(scene, s).value()};

@@ -28,8 +28,8 @@
 namespace dlo::compare {
 namespace {
 
-// `compare` for the force model's shape and `check` for the file that `solve` writes report the
-// same.
+// compare() for the force model's shape and check_shape() for its points and arc lengths report the
+// same deviations and E*.
 TEST(ShapeCheck, AgreesWithCompareOnTheSameShape) {
   Scene scene = heavy_scene(3, 10);
   scene.force_model.law = BendingLaw::paper;
@@ -207,7 +207,8 @@ CheckResult check_points(const Scene& scene, const Eigen::Matrix3Xd& points, dou
                 .shape = {.modulus = ModulusSearch::no}});
 }
 
-// Within the first fifth of a soft rod's length, points may follow a bend or cut it.
+// Without points in the first quarter of a soft rod's length, a shape may follow the bend there or
+// cut it.
 TEST(ShapeCheck, AFileWithoutPointsAtTheBendIsUndetermined) {
   const Scene scene = heavy_scene(100, 0);
   std::vector<double> s = equal_arc_lengths(1, 101);
