@@ -66,7 +66,8 @@ inline std::vector<std::vector<double>> csv_numbers(const std::vector<CsvRow>& r
   return numbers;
 }
 
-/// Returns the value in a column of the first row below the header.
+/// Returns the value in a column of the first row below the header. Throws std::runtime_error if
+/// there is no such column, and std::out_of_range if a row is missing.
 inline std::string first_row_value(const std::string& text, const std::string& column) {
   const std::vector<CsvRow> rows = csv_rows(text);
   const auto name = std::find(rows.at(0).begin(), rows.at(0).end(), column);

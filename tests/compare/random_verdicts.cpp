@@ -11,10 +11,10 @@
 //   (c) a straight line, a smooth curve or a catenary: fail
 //   (d) a Hookean chain of 8 to 60 segments: pass, or undetermined if it is too coarse
 //   (e) that chain with springs of 0.7 times EI/h: fail, with the cause among the first two
-// A file of (b), (c) or (e) that is within the tolerance of a stable equilibrium after all is not
-// wrong and is skipped. Each wrong verdict is printed with the number of its scene; of each class
-// the table has the number of files and of wrong verdicts. Ends with 0 if there is no wrong pass
-// and at most 1 % of the right files fail, with 1 if not.
+// A file of (b), (c) or (e) that is within 1.1 times the tolerance of a stable equilibrium is not
+// certainly wrong and is skipped. Each wrong verdict is printed with the number of its scene; of
+// each class the table has the number of files and of wrong verdicts. Ends with 0 if there is no
+// wrong pass and at most 1 % of the right files have a wrong verdict, with 1 if not.
 
 #include <Eigen/Geometry>
 #include <algorithm>
@@ -50,7 +50,7 @@ constexpr double allowed = 0.01;   // tolerance over the length
 constexpr double time_limit = 10;  // time limit of a solve [s]
 constexpr double certainly_wrong_factor =
     1.1;                                     // factor on the tolerance of what is certainly wrong
-constexpr double tolerated_failures = 0.01;  // share of right files that may fail
+constexpr double tolerated_failures = 0.01;  // share of right files that may have a wrong verdict
 
 /// The classes of scenes, used in turn.
 constexpr std::array kinds = {"one clamp",     "between grips", "rigid body",
@@ -145,8 +145,8 @@ Points refined(const Points& points, int count) {
   return resample(shape, equal_arc_lengths(shape.arc_length.back(), count)).points;
 }
 
-/// Returns the smallest distance (RMS) of a file from a rod under any convention: at equal arc
-/// lengths if the file contains them; else by nearest points, in both directions.
+/// Returns the RMS distance of a file from a rod [m]: at equal arc lengths if the file contains
+/// them; else the larger of the distances of either curve from the nearest points of the other.
 double distance_from(const MeasuredShape& file, const Equilibrium& rod, double length) {
   constexpr int samples = 400;
   if (!file.arc_length.empty()) {

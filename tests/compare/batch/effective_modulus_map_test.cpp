@@ -14,7 +14,7 @@
 
 namespace {
 
-/// Returns the grid of data/effective_modulus.csv, as the README's command has it.
+/// Returns the sweep whose table is data/effective_modulus.csv, as the README's command has it.
 dlo::compare::Sweep shipped_map() {
   std::vector<dlo::compare::Axis> axes;
   for (const char* text :

@@ -34,7 +34,8 @@ using dlo::test::has_all;
 
 class Reading : public dlo::test::Folder {};
 
-/// Returns the messages of all readers of files for this file.
+/// Returns the messages of the readers of scenes, scene templates, parameters, materials, baselines
+/// and shapes for this file, in this order.
 std::vector<std::string> messages_of_all_readers(const std::string& file) {
   using namespace dlo::compare;
   return {error_of<InputError>([&] { (void)load_scene(file); }),

@@ -34,7 +34,8 @@ class CommaPunctuation : public std::numpunct<char> {
   [[nodiscard]] std::string do_grouping() const override { return "\3"; }
 };
 
-/// The C++ library's locale of this process, and the C library's too where one can be made.
+/// Fixture that sets a locale with a decimal comma in the C++ library, and in the C library too if
+/// localedef can make one.
 class DecimalComma : public dlo::test::Command {
  protected:
   void SetUp() override {

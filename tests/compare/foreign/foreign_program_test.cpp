@@ -33,7 +33,7 @@ std::string refusal_of_program(const std::string& with) {
   return error_of<InputError>([&] { return parse_foreign_program(with); });
 }
 
-/// Fixture with a private temporary folder, to check which files remain in it.
+/// Fixture with a private temporary folder, which must be empty at the end of the test.
 class ForeignFolder : public testing::Test {
  protected:
   void SetUp() override {

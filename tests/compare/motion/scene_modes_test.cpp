@@ -141,8 +141,8 @@ TEST(SteppedMode, IsWhatTheSimulationDoes) {
               0.01);
 }
 
-// Steps at the reported least rate are stable. At a slightly lower rate, with longer steps, they
-// are not.
+// Steps at a rate 3 % above the reported least rate are stable. At a rate 3 % below it, with longer
+// steps, they are not.
 TEST(SceneModes, PhysicalStepsAreStableFromTheirLeastRateOn) {
   const double least = scene_modes(stepped_scene(0, 0), {.count = 1}).physical->least_rate;
   for (const double share : {0.97, 1.03}) {

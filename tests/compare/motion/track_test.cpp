@@ -273,7 +273,7 @@ TEST(Track, RepeatsAFrameThatItHasLostInSmallerSteps) {
   }
 }
 
-// After the last pose nothing moves and no work is done, in either model.
+// After the last pose the rod does not move and no work is done, and the force model continues.
 TEST(Track, GoesOnAtRestBeyondTheLastPose) {
   TrackOptions options = at_rate(20);
   options.to = 1.5;
@@ -303,7 +303,8 @@ TEST(Track, RefusesWhatDoesNotMove) {
   EXPECT_THROW((void)track(swung(), options), InputError);
 }
 
-// If the motion is slow enough for the force model, its error is the same as at rest.
+// If the motion is slow enough for the force model, its mean error is less than twice that at rest
+// plus 1e-3.
 TEST(Track, RunsTheForceModelBesideIt) {
   Scene scene = swung();
   scene.force_model.points = 16;

@@ -37,7 +37,8 @@ Scene in_space() {
 
 constexpr double lag = 0.05;
 
-/// Returns a recording of the rod at rest at `time - late`, displaced by `up`.
+/// Returns a recording of the rod at rest at `time - late`. Its points are displaced along z, the
+/// last marker at the last time by `up` [m], others by less.
 MarkerMotion recording(const Scene& scene, double late, double up) {
   MarkerMotion motion{.file = "made.csv", .positions = {}};
   const std::vector<double> s = {0.1, 0.2, 0.3, 0.4};

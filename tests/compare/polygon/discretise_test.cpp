@@ -91,7 +91,7 @@ TEST(Discretise, FitsEqualSegmentsBetweenTheGrips) {
   }
 }
 
-/// The message with which a scene is refused.
+/// Returns the message with which discretise() refuses a scene, or "no error".
 std::string refusal(const Scene& scene) {
   return error_of<InputError>([&] { return discretise(scene, scene.force_model); });
 }

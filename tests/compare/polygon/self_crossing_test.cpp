@@ -14,8 +14,10 @@ namespace {
 
 using std::numbers::pi;
 
-/// Returns the smallest distance over all pairs of segments. The distance of a pair is minimised
-/// over a fine grid of positions on both segments, and from there by alternating minimisation.
+/// Returns the smallest distance over all pairs of segments without a common point, or std::nullopt
+/// if no distance is at most `diameter`. A pair whose nearest points are less than three diameters
+/// apart along the rod does not count. The distance of a pair is minimised alternately in the
+/// position on either segment, from the middles of both.
 std::optional<double> nearest_of_all_pairs(const Shape& shape, double diameter) {
   std::optional<double> nearest;
   const auto at = [&](Eigen::Index i, double share) -> Eigen::Vector3d {

@@ -19,7 +19,7 @@
 namespace dlo::compare {
 namespace {
 
-/// A metre of rod, clamped level at arc length 0.
+/// Returns a rod of 1 m, clamped level at arc length 0.
 Scene cantilever(double natural_curvature) {
   Scene scene;
   scene.name = "unlike";

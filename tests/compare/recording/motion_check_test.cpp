@@ -23,7 +23,8 @@ namespace {
 
 Scene swung_rod() { return load_scene(std::string(DLO_DATA) + "/scenes/swung_rod.toml"); }
 
-/// A cable between two clamps, one of which is led away and up.
+/// Returns a cable between two clamps, one of which moves away and up. `error` returns what is
+/// added to its position [m] at a time [s].
 Scene moving_clamp(const std::function<Eigen::Vector3d(double)>& error = {}) {
   std::string text =
       "gravity = [0, 0, -9.81]\n[rod]\nlength = 0.6\nbending_stiffness = 2e-3\n"
@@ -39,7 +40,7 @@ Scene moving_clamp(const std::function<Eigen::Vector3d(double)>& error = {}) {
   return parse_scene(text, "led.toml");
 }
 
-/// Times at unequal distances, which no frames of the model have.
+/// Returns count + 1 times from 0 to `end` [s] at unequal distances.
 std::vector<double> uneven_times(double end, int count) {
   std::vector<double> times;
   for (int k = 0; k <= count; ++k) {

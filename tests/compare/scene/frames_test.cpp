@@ -28,8 +28,8 @@ torsional_stiffness = "7.9e-3 N m^2"
 )";
 const std::string rod_without_torsion = rod.substr(0, rod.find("torsional"));
 
-/// Returns a gripper of five lines with additional text; the first one after `rod` is on lines 6 to
-/// 10.
+/// Returns a gripper of four lines with additional text. The first gripper after `rod` is on lines
+/// 6 to 9, and its additional text begins on line 10.
 std::string gripper(double at, const std::string& more, const std::string& hold = "clamp") {
   std::string text = "[[gripper]]\nat = " + std::to_string(at) + "\nposition = [" +
                      std::to_string(0.8 * at) + ", 0, 0]\nhold = \"" + hold + "\"\n";

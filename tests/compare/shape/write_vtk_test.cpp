@@ -82,8 +82,8 @@ TEST(VtkPolyline, TitleIsOneLineOfPrintableCharacters) {
   EXPECT_LT(text.find("\nASCII"), 256U);
 }
 
-// At the ends of the rod, tension and moment are those of the grippers; the moment is EI times the
-// curvature.
+// At both ends of the rod the tension is that of the gripper. At the first end the moment, EI times
+// the curvature, is that of the gripper.
 TEST(Solution, CurvatureAndTensionAreThoseOfTheGrippers) {
   const Scene scene = loaded_arch();
   for (const Model model : {Model::energy, Model::exact}) {
