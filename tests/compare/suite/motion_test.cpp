@@ -110,7 +110,7 @@ class MotionSuite : public dlo::test::Command {
     Command::SetUp();
     if (run_line("[ -x /usr/bin/python3 ]").status != 0) GTEST_SKIP() << "no python3";
   }
-  /// The card of mover.py, by its defect.
+  /// Returns the entry of the scene motion_vibration in the card of mover.py with this defect.
   [[nodiscard]] json scene_card(const std::string& defect, const std::string& more = "",
                                 int status = 0) const {
     return json_of("suite --points 6 --scenes motion_vibration --with mover='/usr/bin/python3 " +

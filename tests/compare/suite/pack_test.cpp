@@ -139,7 +139,7 @@ TEST(Pack, CommittedOneHasEveryScene) {
   EXPECT_LT(bytes, 1'000'000U);
 }
 
-/// Numbers of an ASCII DataArray, which begins behind `tag`.
+/// Returns the numbers of the ASCII DataArray in whose opening tag `tag` occurs first.
 std::vector<double> numbers_after(const std::string& text, const std::string& tag) {
   const std::size_t begin = text.find('>', text.find(tag)) + 1;
   std::istringstream words(text.substr(begin, text.find('<', begin) - begin));

@@ -25,7 +25,7 @@ import sys
 
 
 def tridiagonal(lower, diagonal, right):
-    """Solves a symmetric system, by elimination; False where it is not positive definite."""
+    """Solves a symmetric tridiagonal system by elimination. Returns None if it is not positive definite."""
     diagonal, right = diagonal[:], right[:]
     for i in range(1, len(diagonal)):
         if not diagonal[i - 1] > 0:
@@ -53,7 +53,7 @@ class Chain:
         is_half = defect in ("middle", "linear", "weightless", "light", "soft", "caps", "limp")
         h = length / (n - 0.5 if is_half else n)
         self.lengths = [h / 2 if is_half else h] + [h] * (n - 1)
-        # Of the joint before each segment; the first one is at the clamp.
+        # Spring constants of the joint before each segment; the first joint is at the clamp.
         first = {"right": 2.0, "hinge": 1.0, "no_h": 2.0, "not_at_rest": 2.0}.get(defect)
         spring = stiffness if defect == "no_h" else stiffness / h * (0.7 if defect == "soft" else 1)
         self.springs = [1e6 * spring if first is None else first * spring] + [spring] * (n - 1)
@@ -107,7 +107,8 @@ class Chain:
         return gradient, diagonal, lower
 
     def moved(self, steps, growth):
-        """Returns the angles after implicit steps towards rest, each longer than the previous one by a factor."""
+        """Returns the angles after implicit steps towards rest, each `growth` times as long as the previous one. A
+        step without a positive definite system moves nothing and halves the length of the next one."""
         angles = [self.clamp] * len(self.lengths)
         time = self.relaxation / 100
         for _ in range(steps):

@@ -26,7 +26,7 @@ using testing::HasSubstr;
 
 class SuiteCommand : public dlo::test::Command {
  protected:
-  /// Returns the simulator of simulator.py with this defect.
+  /// Returns the option --with that runs simulator.py with this defect.
   static std::string simulator_with_defect(const std::string& defect) {
     return " --with " + defect + "='/usr/bin/python3 " + DLO_DATA +
            "/../tests/compare/suite/simulator.py " + defect + " {scene} {points} {shape}'";

@@ -1,5 +1,5 @@
-// Tests of the error bounds of ten answers by a third method, with which no answer was computed:
-// extrapolation from chains of hinges with N, 2N and 4N points.
+// Tests of the error bounds of thirteen answers by a third method, with which no answer was
+// computed: extrapolation from chains of hinges with N, 2N and 4N points.
 
 #include <gtest/gtest.h>
 
@@ -43,8 +43,8 @@ Eigen::Matrix3Xd interpolate(const Shape& chain, const std::vector<double>& at) 
   return points;
 }
 
-/// Removes a point of a chain at a clamp. The segment at a clamp is straight, so that the other
-/// points are off the rod by h^2 / 8 times the curvature, but not the point at the clamp.
+/// Returns the chain without its points at clamps. The segment at a clamp is straight, so that the
+/// other points are off the rod by h^2 / 8 times the curvature, but not the point at the clamp.
 Shape without_clamps(Shape chain, double h) {
   std::vector<double>& s = chain.arc_length;
   constexpr double shorter = 0.75;
