@@ -101,8 +101,8 @@ TEST(Discretise, SaysHowManyPointsTheGripsNeed) {
   scene.grippers.push_back({.at = 0.1, .position = {0.05, 0, 0}});
   for (const Bookkeeping bookkeeping : {Bookkeeping::consistent, Bookkeeping::paper}) {
     scene.force_model.bookkeeping = bookkeeping;
-    // Half a segment is held and half a segment must be free, so L is at most 0.1 l, or 0.2 l for
-    // the convention `paper`.
+    // Half a segment is held and half a segment must be free, so L is at most 0.1 l. With the
+    // convention `paper` a whole segment is held, so L is at most 0.1 l / 1.5.
     const int needed = bookkeeping == Bookkeeping::consistent ? 12 : 16;
     scene.force_model.points = needed - 1;
     EXPECT_TRUE(has_all(refusal(scene), {"needs at least " + std::to_string(needed) + " points"}));

@@ -47,7 +47,8 @@ TEST(ForeignShape, ATableOfNodesNeedsNoHeader) {
   expect_file_points("nodes.csv");
   expect_file_points("nodes_more.csv");
   EXPECT_EQ(load_shape(corpus + "nodes_more.csv").notes.size(), 1U);
-  // A fourth column that increases by the distances of the points is the arc length.
+  // A fourth column that increases from row to row by 0.99 to 1.5 times the distance of the points
+  // is the arc length.
   const std::string whole = "0 0 0 0\n1 0 0 1\n2 1 0 2.5\n";
   EXPECT_EQ(parse_shape(whole, "f", 1e-3).arc_length.size(), 3U);
   EXPECT_TRUE(parse_shape("0 0 0 0\n1 0 0 -1\n2 1 0 2.5\n", "f").arc_length.empty());

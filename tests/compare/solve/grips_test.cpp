@@ -78,8 +78,9 @@ void choose_nearer_mirror_image(const Eigen::Matrix3Xd& points, Solution& soluti
   }
 }
 
-/// Errors of the chain against the energy model. Those of forces and torques are divided by the
-/// largest force and torque.
+/// Segment length [m] of a chain and its errors against the energy model. The error of the shape is
+/// an RMS [m]; those of forces and torques are divided by the largest force and torque, if it is
+/// not zero.
 struct Errors {
   double segment = 0;
   double shape = 0;
@@ -341,8 +342,8 @@ TEST(Chain, FindsTheLowestOfTwoArches) {
   }
 }
 
-// Tests chains with and without stretch, and the force model at rest. The balance depends on each
-// reaction and load.
+// Tests chains with and without stretch, and the force model at rest. The balance is lost if the
+// last gripper's force or torque, or the load on the middle point, changes.
 TEST(PolygonBalance, HoldsAndIsLostWithEveryForce) {
   for (const Scene& scene : {heavy_scene(8, 20), spatial_clamps(), yielding_floor()}) {
     for (const Model model : {Model::chain, Model::force}) {

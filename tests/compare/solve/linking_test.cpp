@@ -61,7 +61,8 @@ TEST(Linking, AShapeThatLostTurnsIsNotVerified) {
 }
 
 // The direction of the last clamp passes the opposite of the first clamp's direction. The
-// prescribed number of turns then jumps by one, and no turn is lost.
+// difference between the turns of the shape and the prescribed ones then jumps by one, and no turn
+// is lost.
 TEST(Linking, OpposingClampsLoseNoTurns) {
   Scene before = twisted_scene(0.4, 0);
   before.grippers.back().direction = Eigen::Vector3d(-1, 0.1, 0).normalized();

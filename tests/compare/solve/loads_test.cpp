@@ -204,7 +204,8 @@ TEST(Loads, WhatHasNoPotentialIsForExactWhichSaysWhatItHasChecked) {
     const Solution exact = solve(scene, Model::exact);
     EXPECT_TRUE(has_all(exact.message, {"stability is not judged", why}));
     EXPECT_TRUE(std::isnan(exact.smallest_eigenvalue));
-    // The tension is zero at a free tip; at the clamp it equals the gripper's force along the rod.
+    // The tension is zero at a free tip. At the clamp, whose direction is +x, it is minus the x
+    // component of the gripper's force.
     EXPECT_NEAR(exact.tension.back(), 0, 1e-8);
     EXPECT_NEAR(exact.tension.front(), -exact.grippers[0].force.x(), 1e-6);
   }

@@ -71,7 +71,7 @@ double chain_error(const Scene& scene) {
   return rms(shape.arc_length, shape.points - rod.sample(shape.arc_length).points);
 }
 
-/// Returns the RMS distance of two polygons with the same points.
+/// Returns the RMS distance [m] of two polygons with the same arc lengths.
 double apart(const Shape& a, const Shape& b) { return rms(a.arc_length, a.points - b.points); }
 
 TEST_P(PlanOf, BoundsWhatStretchDoesToThePolygon) {

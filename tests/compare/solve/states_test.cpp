@@ -40,7 +40,8 @@ TEST(States, MirrorImagesBendAndTwistAboutTheirOwnAxes) {
     ASSERT_EQ(samples.d1.cols(), samples.points.cols());
     // All equilibria have the d1 that the clamp prescribes.
     EXPECT_LT((samples.d1.col(0) - scene.first_frame().col(0)).norm(), 1e-9);
-    // Trapezoidal sums of the stored energy, and of 1/2 GJ u3^2 with u3 = d1' . d2 at the middles.
+    // Trapezoidal sums of the stored energy, and of 1/2 GJ u3^2 with u3 = d1' . d2 by central
+    // differences at the inner points.
     double bending = 0;
     double twisting = 0;
     for (Eigen::Index i = 0; i < samples.d1.cols(); ++i) {

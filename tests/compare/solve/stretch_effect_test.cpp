@@ -19,7 +19,9 @@ namespace {
 
 using Eigen::Vector3d;
 
-/// A line of 100 m between two pins, in the units that a file would have.
+/// Returns a line of 100 m between two pins that are `apart` [m] on one level.
+/// @param EA  [N]
+/// @param EI  [N m^2]
 Scene line(double EA, double apart, double EI = 1) {
   Scene scene;
   scene.gravity = {0, 0, -10};
@@ -85,8 +87,8 @@ TEST(StretchEffect, OfARodThatHangsIsThatOfHookesLaw) {
   EXPECT_NEAR(solution.stretch.tension, 0, 1e-9);
 }
 
-// Between grips or beyond the last one, the predicted change of the largest tension by stretch
-// agrees with model exact with stretch.
+// For a rod with free ends on both sides of a clamp the predicted change of the largest tension by
+// stretch agrees with model exact with stretch within 5 %.
 TEST(StretchEffect, OfOneClampIsThatOfTheRodThatStretches) {
   for (const Vector3d& direction : {Vector3d(1, 0, 0), Vector3d(1, 0, 1), Vector3d(1, 0, -2)}) {
     Scene scene = held_rubber(direction.normalized());

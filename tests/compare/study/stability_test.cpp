@@ -162,7 +162,9 @@ TEST(Stability, ThePapersStepperBlowsUpBetweenUnequalSegments) {
   EXPECT_EQ(stability(options).front().outcome, Outcome::diverges);
 }
 
-/// Expects that the predicted limits of a stability map are safe and close to the measured ones.
+/// Expects that the predicted limits of a stability map are safe and close to the measured ones: of
+/// the columns' ratios of measured to predicted limit the least is >= 1 and < `tightest`, and the
+/// largest is < `loosest`.
 void expect_safe_and_tight(const std::string& what, const Scene& scene, MapAxis axis,
                            double tightest, double loosest) {
   const StabilityMap map =

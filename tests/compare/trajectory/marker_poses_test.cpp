@@ -20,7 +20,8 @@ namespace {
 constexpr double radius = 0.2;  // [m]
 constexpr double rate = 2;      // [rad/s]
 
-/// Returns the direction of a gripper that moves on a circle and rotates with it.
+/// Returns the direction of a gripper that moves on a helix about z and rotates with it: the
+/// tangent of the helix's circle.
 Eigen::Vector3d direction_at(double time) {
   return {-std::sin(rate * time), std::cos(rate * time), 0};
 }

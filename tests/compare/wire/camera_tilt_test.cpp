@@ -110,8 +110,9 @@ TEST(CameraTilt, IsRefusedWhereMoreThanWeightActs) {
       has_all(refusal(), {"wire: its plane or gravity differs from", "under one gravity)"}));
 }
 
-/// Returns the probability of a logarithm of E by one shape, summed over all directions of both
-/// clamps, by quadrature.
+/// Returns, up to a constant, the logarithm of the likelihood of a stiffness exp(log_modulus) times
+/// the scene's for one shape. The likelihood is summed over 15 directions of either clamp, within
+/// three tolerances.
 double log_probability(const Scene& scene, double log_modulus, const MeasuredShape& shape,
                        double noise, double tolerance) {
   constexpr int directions = 15;

@@ -86,9 +86,10 @@ MaterialFit fit(const std::vector<Picture>& pictures, const MaterialFitOptions& 
   return fit_material(scenes, shapes, options);
 }
 
-// The clamps are misaligned by 5 degrees, the natural curvature is up to 3 / l, and errors of 0.3 %
-// of the length are correlated over a fifth of the length. A correct interval of 95 % contains the
-// truth in 90 to 99 of 100 draws with a probability above 95 %.
+// The clamps are misaligned by 5 degrees, the natural curvature is up to 3 / l and its linear term
+// up to 1 / l, and errors of 0.3 % of the length are correlated over a fifth of the length. A
+// correct interval of 95 % contains the truth in 90 to 99 of 100 draws, with a probability of more
+// than 95 %.
 TEST(WireFit, StiffnessBesideCurvatureAndClampAnglesIsWithinFivePercentAndItsIntervalCovers) {
   std::mt19937 random(41);
   constexpr int draws = test::sanitized ? 3 : 100;
@@ -267,7 +268,8 @@ TEST(WireFit, SystematicResidualsNameWhatWouldRemoveThem) {
   }
 }
 
-// The moments of the two clamps compensate it, so that the estimate equals the prior value.
+// The moments of the two clamps compensate a constant curvature, so that the estimate equals the
+// prior value, 0.
 TEST(WireFit, AConstantCurvatureBetweenTwoClampsIsSaidNotToBeSeen) {
   std::mt19937 random(6);
   Scene nominal = test::heavy_scene(20, 30);
@@ -339,6 +341,7 @@ TEST(WireFit, ShapesThatScatterSayItAndWidenTheInterval) {
 }
 
 // Shapes of one stiffness are reported as scattered with a probability of at most one in twenty.
+// The test allows 12 of 100 draws.
 TEST(WireFit, ShapesOfOneStiffnessSeldomScatter) {
   std::mt19937 random(9);
   constexpr int draws = test::sanitized ? 4 : 100;
