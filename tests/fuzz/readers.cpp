@@ -22,8 +22,8 @@ void require_promise(bool kept, const std::string& what) {
   if (!kept) throw std::logic_error("broken promise: " + what);
 }
 
-/// Whether `read` returns a value. If not, checks that the error is one line that begins with this
-/// file's name.
+/// Whether `read` returns a value. If it throws an InputError, throws std::logic_error unless the
+/// message is one line that begins with `start`. Other exceptions pass.
 template <typename Read>
 bool reads(const Read& read, const std::string& start) {
   try {

@@ -12,6 +12,6 @@ void model(const std::string& text);       ///< MJCF
 void parameters(const std::string& text);  ///< parameters of the force model
 void baseline(const std::string& text);    ///< a baseline; written and read again it is unchanged
 void shape(const std::string& text);       ///< a shape of any format, in metres and in millimetres
-void vary(const std::string& text);        ///< FIELD=VALUES of a sweep, and the scenes it gives
+void vary(const std::string& text);        ///< FIELD=VALUES and its scenes; no file's name
 
 }  // namespace dlo::fuzz

@@ -5,11 +5,12 @@
 //
 // Both sides of a ratio take turns, some milliseconds each, by the clock of this thread's computing
 // time; the ratio of a turn is that of two neighbours, and the median over the turns is taken.
-// Other programs slow both sides, but not alike: a median may miss its promise by `margin`, and it
-// has `attempts` to keep it. A loss that no noise explains fails all of them. Both sides are loops
-// of little code: what another program on the same core does to them is alike. It slows a solve,
-// whose code is much, up to three times as much as a step, so that no ratio of the two is promised;
-// the tests hold how many evaluations a solve takes.
+// Other programs slow both sides, but not alike: a median of at least `margin` times the promised
+// ratio suffices (the exponent may be 5 % out of its range), and up to `attempts` medians are
+// measured. A loss that no noise explains fails all of them. Both sides are loops of little code:
+// what another program on the same core does to them is alike. It slows a solve, whose code is
+// much, up to three times as much as a step, so that no ratio of the two is promised; the tests
+// hold how many evaluations a solve takes.
 
 #include <algorithm>
 #include <cmath>
@@ -70,7 +71,8 @@ double median(std::vector<double> values) {
   return *middle;
 }
 
-/// Returns the time of one repetition of `slow` divided by that of `fast`.
+/// Returns the time of one repetition of `slow` divided by that of `fast`, the median over the
+/// turns.
 double ratio(const Work& slow, const Work& fast) {
   std::vector<double> ratios;
   ratios.reserve(turns);

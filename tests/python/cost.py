@@ -18,7 +18,7 @@ BLOCKS = 33_334
 
 
 def seconds(scene, calls, steps):
-    """Returns the time of calls of a new loop, each of as many steps."""
+    """Returns the time [s] of `calls` calls of a new loop, each of `steps` steps."""
     step = dlo.ForceModel(scene).step
     begin = time.perf_counter()
     for _ in range(calls):

@@ -124,7 +124,7 @@ def test_threads_get_what_one_gets(cable):
 
 
 def resident():
-    """Memory of this process [bytes]."""
+    """Returns the resident memory of this process [bytes]."""
     with open("/proc/self/statm", encoding="ascii") as statm:
         return int(statm.read().split()[1]) * os.sysconf("SC_PAGE_SIZE")
 
@@ -144,7 +144,7 @@ def test_memory_does_not_grow(steel, sanitized):
     work(300)
     before = resident()
     work(1500)
-    # A hundredth of what one solution of eleven points has, each time, would be 40 kB.
+    # The limit is 333 bytes for each repetition.
     assert resident() - before < 500_000
 
 

@@ -241,11 +241,11 @@ def test_sweep_has_the_rows_of_the_command(root, command):
         capture_output=True, text=True, check=True,
     )
     header, *rows = [line.split(",") for line in done.stdout.splitlines()]
-    # Which has a list's common unit in its name.
+    # The command writes the common unit of a list into the name of its column.
     assert list(columns) == [name.partition(" [")[0] for name in header]
     assert columns["row"].tolist() == [0, 1, 2, 3]
     for name in ("gamma", "tip_x_m", "tip_y_m", "energy_J", "terms"):
-        # Which writes ten digits.
+        # The command writes ten digits.
         assert [f"{value:.10g}" for value in columns[name]] == [row[header.index(name)] for row in rows]
     assert columns["status"].tolist() == ["ok"] * 4
 
@@ -260,7 +260,7 @@ def test_a_sweep_has_all_digits_and_the_types_it_says(cable):
     assert kinds.pop("row") == "i"
     assert kinds.pop("gripper.0.direction") == kinds.pop("status") == "U"
     assert set(kinds.values()) == {"f"}
-    # The same whatever is in the rows: nothing where there is no result.
+    # The types do not depend on the rows. A row without result has an empty text or NaN.
     table = dlo.sweep(cable, {"rod.length": numpy.array([1, -1]), "force_model.points": [12]}, model="compare-chain")
     assert {name: table[name].dtype.kind for name in ("optimum", "evaluations", "tip_over_length")} == {
         "optimum": "U", "evaluations": "f", "tip_over_length": "f",

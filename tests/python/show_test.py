@@ -41,7 +41,7 @@ SCENES = {
 
 
 def shapes(name):
-    """Returns every kind of result that has a picture, of one scene."""
+    """Returns four results of one scene that have pictures: a solution, all solutions, a check and a comparison."""
     scene = SCENES[name]()
     scene.force_model = {"points": 12}
     solution = dlo.solve(scene, samples=41)
