@@ -52,11 +52,12 @@ constexpr double certainly_wrong_factor =
     1.1;                                     // factor on the tolerance of what is certainly wrong
 constexpr double tolerated_failures = 0.01;  // share of right files that may have a wrong verdict
 
-/// The classes of scenes, used in turn.
+/// Kinds of scenes, used in turn.
 constexpr std::array kinds = {"one clamp",     "between grips", "rigid body",
                               "yielding body", "twisted",       "stretch"};
 
-/// Returns a random rod of this kind, of unit length and stiffness.
+/// Returns a random rod of the kind that the scene of this number has, of unit length and
+/// stiffness.
 Problem problem_of(std::uint64_t number, RandomNumbers& random) {
   const std::string kind = kinds[number % kinds.size()];
   const RandomSpace space = random.chance(0.5) ? RandomSpace::plane : RandomSpace::space;
@@ -112,7 +113,8 @@ Scene scene_of(std::uint64_t number, RandomNumbers& random) {
   return scene;
 }
 
-/// Returns the stable equilibria that a search finds, certified.
+/// Returns the certified stable equilibria that a search finds; of a rod that stretches, only the
+/// equilibrium of model exact.
 std::vector<Equilibrium> stable_states(const Scene& scene) {
   if (scene.stretch == Stretch::counted) {
     return {solve_reference(scene, Model::exact, {.time_limit = time_limit})};

@@ -15,7 +15,7 @@
 namespace dlo::compare {
 namespace {
 
-constexpr double chain_weight = 30;  // N/m, on EI = 1 N m^2 and 1 m
+constexpr double chain_weight = 30;  // weight [N/m] of 1 m with EI = 1 N m^2
 
 Scene unequal_scene() {
   Scene scene;

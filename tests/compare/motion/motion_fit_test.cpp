@@ -24,8 +24,8 @@ constexpr double marker_noise = 1e-3;  // standard deviation of a coordinate [m]
 
 /// Recording with the parameters of its simulation.
 struct Recording {
-  Scene scene;  // scene whose EI the fit does not know
-  double stiffness = 0;
+  Scene scene;           // scene whose EI the fit does not know
+  double stiffness = 0;  // EI divided by the mass per length [m^4/s^2]
   RodDamping damping;
   MarkerMotion motion;
 };

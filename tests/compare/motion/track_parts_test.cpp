@@ -15,8 +15,8 @@ namespace {
 using energy_model::ContactKind;
 using energy_model::ContactPart;
 
-// An obstacle is in its position of the preceding frame, for any part of the motion and any ratio
-// of the frame rates.
+// In each frame an obstacle has its position of the last tick of the obstacle rate, for any part of
+// the motion and any ratio of the rates.
 TEST(FrameClock, ObstaclesAreWhereTheirOwnFrameBeforeHasThem) {
   const Scene scene = parse_scene(
       "[rod]\nlength = 1\nbending_stiffness = 1\nmass_per_length = 0.5\n[[gripper]]\nat = 0\n"

@@ -81,7 +81,8 @@ void expect_second_order(const Scene& scene, double rate, double most, double of
 
 TEST(Track, EnergyGrowsByTheWorkOfWhatMoves) { expect_second_order(swung(), 10, 8e-3, 0.4); }
 
-/// A couple at the tip and one at the clamp, which rotates by more than a turn.
+/// Text of a scene with a couple at the tip and one at the clamp, which rotates by more than a
+/// turn.
 const std::string rotating_clamp =
     light_wire +
     "[[gripper.pose]]\ntime = 0\nposition = [0, 0, 0]\ndirection = \"10 deg\"\n"
@@ -91,7 +92,8 @@ const std::string rotating_clamp =
     "[[load]]\nat = 1\nforce = [0, 0, 0]\ntorque = [0, 0, 0.8]\n"
     "[[load]]\nat = 0\nforce = [0, 0, 0]\ntorque = [0, 0, -0.5]\n";
 
-/// Two pins whose chord rotates by more than a turn about a couple between them.
+/// Text of a scene with two pins, whose chord rotates by more than a turn, and a couple between
+/// them.
 const std::string rotating_chord =
     "gravity = [0, 0, 0]\n" + light_wire +
     "position = [0, 0, 0]\nhold = \"pin\"\n[[gripper]]\nat = 1\nhold = \"pin\"\n"
@@ -114,7 +116,8 @@ TEST(Track, EnergyGrowsByTheWorkBesideCouples) {
   }
 }
 
-/// Two clamps that hold the frame, of which one leaves the plane, rotates and rolls.
+/// Text of a scene with two clamps that hold the frame. One of them moves, rotates and rolls out of
+/// the plane.
 const std::string rolling_clamp =
     "gravity = [0, 0, 0]\n[rod]\nlength = 1\nbending_stiffness = 1\n"
     "torsional_stiffness = 0.7\nmass_per_length = 0.1\n[[gripper]]\nat = 0\n"

@@ -47,7 +47,7 @@ Scene flat_scene() {
   return scene;
 }
 
-/// Returns the points of a rod, one of them moved by `off`.
+/// Returns points of a rod. The sixth one is displaced by `off` [m] along y.
 MeasuredShape measured(const Scene& scene, int points, double off) {
   MeasuredShape shape{.file = "mine.csv"};
   const Solution rod = solve(scene, Model::energy, {}, equal_arc_lengths(scene.length, points));

@@ -13,7 +13,7 @@
 namespace dlo::compare {
 namespace {
 
-/// A moving scene of data/, with few frames.
+/// Moving scene of data/scenes with its track at a given frame rate.
 struct Motion {
   explicit Motion(const std::string& name, double frame_rate)
       : scene(load_scene(DLO_DATA "/scenes/" + name + ".toml")) {

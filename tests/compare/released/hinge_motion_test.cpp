@@ -21,7 +21,7 @@ ReleasedRod released(const std::string& id) {
   return {load_scene(stem + ".toml"), load_scene(stem + "_begin.toml")};
 }
 
-/// First root of cos x cosh x = -1, and its mode, 1 at the tip.
+/// First root of cos x cosh x = -1. Its mode, which is 1 at the tip, is first_mode().
 constexpr double lambda = 1.8751040687119611;
 double first_mode(double x) {
   const double ratio =

@@ -24,8 +24,8 @@ namespace {
 
 constexpr double deg = std::numbers::pi / 180;
 
-/// Wire whose scene contains only nominal values, and a picture of it. EI = 1 in the scenes' unit,
-/// and 1.6 times as much in the nominal scene.
+/// Wire whose scene contains only nominal values, and a picture of it. The modulus of the nominal
+/// scene is `stiffness_error` times the true modulus.
 struct Picture {
   Scene nominal;
   MeasuredShape seen;
