@@ -80,7 +80,8 @@ double ratio(const Work& slow, const Work& fast) {
   return median(ratios);
 }
 
-/// Returns the paper's rod in its plane, with the stepper of the highest cost.
+/// Returns a straight rod with the paper's length, EI and weight, with the law hooke, c_c = 660 N
+/// and the stepper `automatic`.
 BatchRod steel_rod(int points) {
   SteelRod steel;
   steel.points = points;
