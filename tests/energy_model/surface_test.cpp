@@ -67,7 +67,8 @@ TEST(Surface, ARodThatBeginsToLieStaysThere) {
     for (const RodSection& section : sections()) {
       RodState state = lying(surface, section, random_state(random));
       const RodElement element{section, {}, 0, 0.5, &surface};
-      ASSERT_TRUE(integrate_rod(element, 1e-13, state));
+      RodIntegrals integrals;
+      ASSERT_TRUE(integrate_rod(element, 1e-13, state, integrals));
       EXPECT_LT(lying_conditions(surface, section, state).values.norm(), 1e-9);
       EXPECT_NEAR(surface.gap(state.r).value, 0, 1e-10);
     }
@@ -82,25 +83,30 @@ TEST(Surface, LinearisedEquationsAreThoseOfTheRod) {
     for (const RodSection& section : sections()) {
       const RodState begin = lying(surface, section, random_state(random));
       const RodElement element{section, {}, 0, 0.3, &surface};
-      RodVariation change = RodVariation::Identity(12, 12);
+      RodIntegrals integrals;
+      RodVariation change(12);
+      change.r.leftCols<3>().setIdentity();
+      change.spin.middleCols<3>(3).setIdentity();
+      change.m.middleCols<3>(6).setIdentity();
+      change.n.rightCols<3>().setIdentity();
       RodState end = begin;
-      ASSERT_TRUE(integrate_rod(element, 1e-12, end, &change));
+      ASSERT_TRUE(integrate_rod(element, 1e-12, end, change, integrals));
       for (Eigen::Index k = 0; k < 12; ++k) {
         const Eigen::Matrix<double, 12, 1> step = h * Eigen::Matrix<double, 12, 1>::Unit(k);
         RodState ahead = moved(begin, step);
         RodState behind = moved(begin, -step);
-        ASSERT_TRUE(integrate_rod(element, 1e-13, ahead));
-        ASSERT_TRUE(integrate_rod(element, 1e-13, behind));
+        ASSERT_TRUE(integrate_rod(element, 1e-13, ahead, integrals));
+        ASSERT_TRUE(integrate_rod(element, 1e-13, behind, integrals));
         const Eigen::Vector3d r = (ahead.r - behind.r) / (2 * h);
         const Eigen::Vector3d m = (ahead.m - behind.m) / (2 * h);
         const Eigen::Vector3d n = (ahead.n - behind.n) / (2 * h);
         const Eigen::Matrix3d turned = (ahead.R - behind.R) * end.R.transpose() / (2 * h);
         const Eigen::Vector3d spin(turned(2, 1), turned(0, 2), turned(1, 0));
         const double scale = 1 + n.norm() + m.norm();
-        EXPECT_LT((r - change.col(k).head<3>()).norm(), 1e-6 * scale);
-        EXPECT_LT((spin - change.col(k).segment<3>(3)).norm(), 1e-6 * scale);
-        EXPECT_LT((m - change.col(k).segment<3>(6)).norm(), 1e-6 * scale);
-        EXPECT_LT((n - change.col(k).tail<3>()).norm(), 1e-6 * scale);
+        EXPECT_LT((r - change.r.col(k)).norm(), 1e-6 * scale);
+        EXPECT_LT((spin - change.spin.col(k)).norm(), 1e-6 * scale);
+        EXPECT_LT((m - change.m.col(k)).norm(), 1e-6 * scale);
+        EXPECT_LT((n - change.n.col(k)).norm(), 1e-6 * scale);
       }
     }
   }
