@@ -69,7 +69,8 @@ CLI::Validator number_check(std::function<double(const std::string&)> read,
             } catch (const compare::InputError& error) {
               problem = error.what();
             }
-            const bool complete = problem.find("(allowed: ") != std::string::npos;
+            // A message about a unit states all that is allowed.
+            const bool complete = problem.find("unit") != std::string::npos;
             return fmt::format("{}: {}{}", text, problem,
                                complete ? "" : fmt::format(" (allowed: {})", allowed));
           },
