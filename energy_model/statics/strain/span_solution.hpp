@@ -37,7 +37,7 @@ struct [[nodiscard]] SpanSolution {
   /// the shape may be at a fold or passes very near to a soft obstacle's middle. An equilibrium
   /// becomes near_singular if it is > 0, unless it is a saddle.
   int neutral_directions = 0;
-  /// Result of missing_turns() for an intrinsically curved rod with both end frames prescribed.
+  /// Result of missing_turns() for a rod with material directors and both end frames prescribed.
   int missing_turns = 0;
   int rigid_body_modes = 0;  ///< number of rigid-body modes, if certify() has processed the shape
   std::shared_ptr<SpanEnergy> model;
