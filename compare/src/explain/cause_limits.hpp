@@ -12,8 +12,8 @@ inline constexpr double check_left = 0.5;
 /// `check`: fraction of the remaining deviation that each additional number must remove, since any
 /// number that is fitted removes some.
 inline constexpr double required_reduction_per_parameter = 0.5;
-/// `check`: deviations below this fraction, or below this share of the length, count as equal: fits
-/// end there.
+/// `check`: deviations below this fraction, or below this share of the length, count as equal; fits
+/// take them as the noise of the points.
 inline constexpr double equality_share = 0.02;
 inline constexpr double equality_length_share = 1e-5;
 /// `check`: deviation, divided by the length, above which a shape is simply another one, so that a
