@@ -48,7 +48,8 @@ struct SweepColumn {
   CellKind kind = CellKind::number;
 };
 
-/// Cell of a row: empty if the row has no result. Counts are integers, also in a column of numbers.
+/// Cell of a row: empty if the row has no result, NaN if it has results but not this number (both
+/// are empty in the CSV line). Counts are integers, also in a column of numbers.
 using SweepCell = std::variant<std::monostate, std::int64_t, double, std::string>;
 
 /// Rows first, first + step, ..., below last.

@@ -91,9 +91,11 @@ void fit_alternatives(MaterialProfiles& material, const MaterialPoint& best, Mat
       [](const FitAlternative& a, const FitAlternative& b) { return a.rms_m < b.rms_m; });
 }
 
-/// Widens the interval of E to that of an intrinsically curved wire in misaligned clamps, observed
-/// by a camera that is not level. One or two shapes do not show whether this is the cause of their
-/// residuals, and E differs if it is. The choice by predictions needs more shapes.
+/// Widens the interval of E to include that of an intrinsically curved wire in misaligned clamps,
+/// observed by a camera that is not level if the shapes can share a tilt (why_no_camera_tilt()).
+/// One or two shapes do not show whether this is the cause of their residuals, and E differs if it
+/// is. If the interval is then too wide or open, E is not identified, and `not_identified` states
+/// so unless it has a reason already. The choice by predictions needs more shapes.
 /// @return whether such a wire has a fit
 bool extend_interval_to_curved_wire(MaterialProfiles& material, const MaterialPoint& best,
                                     MaterialFit& fit) {

@@ -72,8 +72,8 @@ struct RodRate {
 ///     r' = t,   R' = R hat(u),   m' = n x t,   n' = -w - f(t), and -w - p N where it lies,
 /// and their linearisation,
 ///     dr' = spin x t,   spin' = R K^-1 R^T (dm + m x spin),   dm' = dn x t + n x (spin x t),
-/// f the drag, with GSL's rk8pd. If the section stretches by a, t in r' and m', and spin x t in dr'
-/// and dm', are replaced by
+/// f the drag, with GSL's rk8pd. If the section stretches by a, t in r', m' and dm' (in dn x t),
+/// and spin x t in dr' and dm', are replaced by
 ///     (1 + a n.t) t   and   (1 + a n.t) spin x t + a (dn.t + n.(spin x t)) t.
 /// Rotations are integrated as nine matrix components; a parametrisation by angles would have
 /// singularities.

@@ -55,9 +55,10 @@ struct LayeredSection {
 };
 
 /// Computes the stiffnesses and mass of a rod from its layers.
-/// @param layers  from the inside out
-/// @throws InputError if a layer is not outside of the previous one, its strands do not fit side by
-/// side, or their number is one that Layer::strands excludes
+/// @param layers  from the inside out; strands >= 0 and, of strands, strand_diameter > 0 are not
+/// checked
+/// @throws InputError if a tube is not outside of the previous layer, strands do not fit side by
+/// side, or there are two strands, or one that is not the first layer
 [[nodiscard]] LayeredSection layered_section(const std::vector<Layer>& layers);
 
 }  // namespace dlo::compare

@@ -98,9 +98,11 @@ struct VibrationOptions {
 Vibrations vibrations(const Problem& problem, const Inertia& inertia, const Equilibrium& known,
                       const VibrationOptions& options = {});
 
-/// Whether every grip is a clamp and the clamps hold a rod straight: each is as far from the next
-/// one, along the directions of both, as the rod between them is long, to rounding. The line is
-/// then its only shape, which solve_energy() returns only if taut_line() applies.
+/// Whether every grip is a clamp, there are two or more, and they hold the rod between them
+/// straight: each is as far from the next one, along the directions of both, as the rod between
+/// them is long, to rounding. If the rod is inextensible, the line is then the only shape of this
+/// part; free ends beyond the outer clamps are not considered. solve_energy() returns the line only
+/// if taut_line() applies.
 [[nodiscard]] bool is_held_straight(const Problem& problem);
 
 /// Computes vibrations() of a rod that is_held_straight(), whose shape does not determine its
