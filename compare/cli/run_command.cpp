@@ -131,6 +131,11 @@ void build(CLI::App& app, std::optional<CommandTimeLimit>& limit, const std::str
   });
 }
 
+ExitStatus print_error(const std::exception& error, ExitStatus status) {
+  print_message("{}", error.what());
+  return status;
+}
+
 }  // namespace
 
 int run_command(std::vector<std::string> words) {
@@ -178,25 +183,21 @@ int run_command(std::vector<std::string> words, std::string& out, std::string& e
 }
 
 ExitStatus report_exception() {
-  const auto say_error = [](const std::exception& error, ExitStatus status) {
-    print_message("{}", error.what());
-    return status;
-  };
   try {
     throw;
   } catch (const compare::BrokenPipe&) {
     throw;
   } catch (const compare::OutputError& error) {
-    return say_error(error, ExitStatus::not_written);
+    return print_error(error, ExitStatus::not_written);
   } catch (const compare::ConvergenceError& error) {
-    return say_error(error, ExitStatus::not_converged);
+    return print_error(error, ExitStatus::not_converged);
   } catch (const compare::InputError& error) {
-    return say_error(error, ExitStatus::bad_input);
+    return print_error(error, ExitStatus::bad_input);
   } catch (const std::invalid_argument& error) {
     // The message of the model names the value that is out of range.
-    return say_error(error, ExitStatus::bad_input);
+    return print_error(error, ExitStatus::bad_input);
   } catch (const std::filesystem::filesystem_error& error) {
-    return say_error(error, ExitStatus::bad_input);
+    return print_error(error, ExitStatus::bad_input);
   } catch (const std::bad_alloc&) {
     write_standard_error("dlo: out of memory\n");
   } catch (const std::length_error&) {

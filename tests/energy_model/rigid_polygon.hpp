@@ -26,7 +26,7 @@ struct PolygonSurroundings {
 /// and a critical dashpot under each point, which never pull.
 class RigidPolygon {
  public:
-  RigidPolygon(int free_points, double gamma, PolygonSurroundings around = {})
+  RigidPolygon(int free_points, double gamma, const PolygonSurroundings& around = {})
       : count_(free_points),
         segment_(1 / (free_points + 0.5)),
         step_(0.25 * segment_ * segment_),
@@ -182,7 +182,8 @@ inline std::vector<double> equal_times(int count, double step) {
 
 /// Returns the tip at increasing times, extrapolated to infinitely many points from a polygon and
 /// one of twice as many.
-inline Eigen::Matrix2Xd limit_of_tips(int free_points, double gamma, PolygonSurroundings around,
+inline Eigen::Matrix2Xd limit_of_tips(int free_points, double gamma,
+                                      const PolygonSurroundings& around,
                                       const std::vector<double>& times) {
   const Eigen::Matrix2Xd coarse = RigidPolygon(free_points, gamma, around).tips(times);
   const Eigen::Matrix2Xd fine = RigidPolygon(2 * free_points, gamma, around).tips(times);

@@ -24,6 +24,7 @@ struct LeadingNumber {
 template <typename Number>
 [[nodiscard]] LeadingNumber<Number> leading_number(std::string_view text) {
   LeadingNumber<Number> result;
+  // cppcheck-suppress invalidLifetime  // a false positive for a text that is read in a loop
   const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), result.value);
   result.length = static_cast<std::size_t>(end - text.data());
   result.error = error;
