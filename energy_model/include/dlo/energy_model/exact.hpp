@@ -21,7 +21,7 @@ struct ExactOptions {
   /// the solver starts with the torque of the shape's `twists` and counts whole turns as they do; a
   /// shape without `twists` is treated as the rod without twist. For a rod with material directors,
   /// which must have a clamp, the frames are given by the shape's d1. If it has no d1, they are
-  /// integrated from the frame of the first clamp, with the torque of the shape's `twists`.
+  /// computed from the frame of the first clamp and from the reactions.
   const Equilibrium* start = nullptr;
 };
 
