@@ -144,8 +144,7 @@ SpanEquilibrium refine_span(const RodSpan& span, const Problem& problem, const E
     return shoot_span(span, mesh, std::move(start), held_frames(span), options);
   }
   const RodSpan released = without_frames(span);
-  if (span.round() && out_of_plane(span, start) < start_plane_tolerance)
-    options.motion = Motion::in_plane;
+  if (out_of_plane(span, start) < start_plane_tolerance) options.motion = Motion::in_plane;
   SpanEquilibrium equilibrium = shoot_span(released, mesh_at(released, mesh.s), std::move(start),
                                            released_frames(released), options);
   return span.twisted() ? twist_span(span, equilibrium, tolerance, deadline) : equilibrium;

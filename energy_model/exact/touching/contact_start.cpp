@@ -14,8 +14,6 @@ namespace dlo::energy_model {
 namespace {
 
 constexpr double arc_length_rounding = 1e-9;  // difference of equal arc lengths, in l
-// Length of an interval times the square root of the force that bends.
-constexpr double growth_of_interval = 3;
 constexpr double twist_step = 1e-4;  // distance over which the rotation of d1 is measured, in l
 
 class Layout {
@@ -71,7 +69,7 @@ class Layout {
     const auto is_duplicate = [](double a, double b) { return b - a < arc_length_rounding; };
     touched.erase(std::unique(touched.begin(), touched.end(), is_duplicate), touched.end());
     force = std::max(1.0, force / least_bending_stiffness(start_.span));
-    const double longest = std::min(start_.span.length / 8, growth_of_interval / std::sqrt(force));
+    const double longest = std::min(start_.span.length / 8, largest_growth / std::sqrt(force));
     start_.mesh = make_mesh(start_.span, longest, touched);
     start_.mesh.contacts.surface.resize(static_cast<std::size_t>(start_.mesh.intervals()));
   }

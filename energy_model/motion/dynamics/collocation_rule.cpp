@@ -1,6 +1,4 @@
 #include <Eigen/Dense>
-#include <algorithm>
-#include <cmath>
 
 #include "base/legendre.hpp"
 #include "dynamics/span_integrator.hpp"

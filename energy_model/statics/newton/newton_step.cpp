@@ -1,7 +1,6 @@
 #include "newton/newton_step.hpp"
 
 #include <cmath>
-#include <cstddef>
 
 #include "linear/reduced_hessian.hpp"
 #include "newton/newton.hpp"

@@ -34,11 +34,11 @@ class ActiveSet {
 
   /// Solves by Newton's method from a guess, or by descent, with fixed contacts.
   [[nodiscard]] SpanSolution newton_from(const Span& span, const TangentField& near);
+
+ private:
   /// Returns the number of coefficients of each element that resolves a shape under the span's
   /// load, or half of it if there are many elements.
   [[nodiscard]] int terms_of_load(const Span& span) const;
-
- private:
   [[nodiscard]] SpanSolution run(Span span, TangentField near, SpanSolution solution,
                                  Resolution resolution);
   [[nodiscard]] SpanSolution resolved(SpanSolution solution, Span& span);

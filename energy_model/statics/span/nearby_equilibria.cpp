@@ -14,7 +14,6 @@
 #include "certify/certify.hpp"
 #include "certify/rigid_body_modes.hpp"
 #include "linear/reduced_hessian.hpp"
-#include "newton/trust_region.hpp"
 #include "span/local_solver.hpp"
 #include "span/refinement.hpp"
 #include "strain/second_derivatives.hpp"

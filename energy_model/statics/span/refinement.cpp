@@ -9,7 +9,6 @@
 #include "base/legendre.hpp"
 #include "certify/certify.hpp"
 #include "certify/piece_cuts.hpp"
-#include "newton/trust_region.hpp"
 #include "span/local_solver.hpp"
 #include "strain/second_derivatives.hpp"
 

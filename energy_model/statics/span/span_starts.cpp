@@ -7,7 +7,6 @@
 #include <numbers>
 #include <optional>
 
-#include "base/spin.hpp"
 #include "dlo/energy_model/turns.hpp"
 #include "problem/segments.hpp"
 #include "strain/span_energy.hpp"
