@@ -8,7 +8,6 @@
 #include <Eigen/Geometry>
 #include <array>
 #include <cmath>
-#include <numbers>
 #include <stdexcept>
 #include <vector>
 

@@ -2,8 +2,6 @@
 
 #include <gtest/gtest.h>
 
-#include <random>
-
 #include "dlo/energy_model/exact.hpp"
 #include "problems.hpp"
 #include "runge_kutta.hpp"

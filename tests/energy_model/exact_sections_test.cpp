@@ -5,7 +5,6 @@
 
 #include <Eigen/Geometry>
 #include <cmath>
-#include <numbers>
 
 #include "dlo/energy_model/exact.hpp"
 #include "problems.hpp"

@@ -7,12 +7,10 @@
 #include <array>
 #include <cmath>
 #include <functional>
-#include <numbers>
 #include <stdexcept>
 #include <string>
 
 #include "../says.hpp"
-#include "base/sized_samples.hpp"
 #include "base/spin.hpp"
 #include "dlo/energy_model/energy.hpp"
 #include "dlo/energy_model/exact.hpp"

@@ -5,7 +5,6 @@
 
 #include <optional>
 
-#include "base/sized_samples.hpp"
 #include "dlo/energy_model/energy.hpp"
 #include "dlo/energy_model/exact.hpp"
 #include "equilibrium_balance.hpp"

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <cstdint>
 #include <limits>
+#include <numbers>
 #include <sstream>
 #include <string>
 #include <vector>
@@ -134,7 +135,7 @@ inline ComparedScene compare_models(std::uint64_t number, const energy_model::Pr
 /// sections, natural strains, couples, line loads and given d1 are not written.
 inline std::string scene_text(const energy_model::Problem& problem, const std::string& name) {
   // A rod of 10 mm with this modulus has EI = 1 N m^2; its density makes the weight.
-  constexpr double pi = 3.14159265358979323846;
+  constexpr double pi = std::numbers::pi;
   const double diameter = 0.01;
   const double modulus = problem.bending_stiffness * 64 / (pi * std::pow(diameter, 4));
   const double density = problem.weight_per_length.norm() / 9.81 / (pi * diameter * diameter / 4);

@@ -4,9 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <Eigen/Geometry>
-#include <algorithm>
 #include <cmath>
-#include <numbers>
 #include <vector>
 
 #include "dlo/energy_model/dynamics.hpp"

@@ -4,13 +4,11 @@
 
 #include <Eigen/Geometry>
 #include <cmath>
-#include <numbers>
 #include <stdexcept>
 
 #include "dlo/energy_model/energy.hpp"
 #include "dlo/energy_model/exact.hpp"
 #include "dlo/energy_model/turns.hpp"
-#include "equilibrium_balance.hpp"
 #include "problems.hpp"
 #include "rolled_clamps.hpp"
 

@@ -6,7 +6,6 @@
 
 #include <Eigen/Geometry>
 #include <cmath>
-#include <numbers>
 #include <vector>
 
 #include "dlo/energy_model/energy.hpp"
