@@ -36,6 +36,21 @@ TEST(Minimise, ThrowsWhatTheObjectiveThrowsAndStops) {
   EXPECT_EQ(objective.calls, 3);
 }
 
+// Storing as many steps as there are unknowns would need more numbers than NLopt can count.
+TEST(Minimise, OfManyUnknownsStoresAsManyStepsAsFit) {
+  constexpr Eigen::Index unknowns = 50'000;
+  const Eigen::VectorXd weights = Eigen::VectorXd::LinSpaced(unknowns, 1, 100);
+  const auto parabola = [&](const Eigen::Ref<const Eigen::VectorXd>& x,
+                            Eigen::Ref<Eigen::VectorXd> gradient) {
+    gradient = weights.cwiseProduct(x);
+    return x.dot(gradient) / 2;
+  };
+  Eigen::VectorXd x = Eigen::VectorXd::Ones(unknowns);
+  (void)test::require_usable(minimise_lbfgs(parabola, x, {1e-6, 1000}));
+  // The gradient's norm at the begin is 1.3e4.
+  EXPECT_LT(weights.cwiseProduct(x).norm(), 1e-3);
+}
+
 TEST(Minimise, CallsNothingASuccessThatNLoptDoesNot) {
   for (const int code : {static_cast<int>(NLOPT_FAILURE), static_cast<int>(NLOPT_INVALID_ARGS),
                          static_cast<int>(NLOPT_OUT_OF_MEMORY), static_cast<int>(NLOPT_FORCED_STOP),
