@@ -26,10 +26,8 @@ class NpyArray {
   [[nodiscard]] const std::vector<std::size_t>& shape() const { return shape_; }
   /// Returns the dimensions as text, such as "3 x 2".
   [[nodiscard]] std::string shape_text() const;
-  /// Whether the numbers have a supported type.
-  [[nodiscard]] bool has_numbers() const { return format_.has_value(); }
-  /// Checks the numbers. @throws InputError unless has_numbers() and the bytes contain all of them
-  /// and nothing else
+  /// Checks the numbers. @throws InputError unless their type is supported, and the bytes contain
+  /// all of them and nothing else
   void require_numbers() const;
   /// Returns one number, after require_numbers(). @param index  one per dimension, below its size
   [[nodiscard]] double at(std::initializer_list<std::size_t> index) const;

@@ -50,7 +50,6 @@ struct ForceTrackSummary : TrackErrors {
   /// remaining RMS distance over all frames, over the length. NaN if the motion is too small.
   double lag = std::numeric_limits<double>::quiet_NaN();  ///< [s], >= 0
   double error_without_lag = std::numeric_limits<double>::quiet_NaN();
-  std::vector<std::string> neglected;  ///< not used, always empty
 };
 
 /// The force model of a scene in simulated time; it starts at rest.

@@ -102,8 +102,7 @@ struct Track {
   /// Number of frames in which the branch was not kept; their shape is on another branch or on the
   /// same one.
   int lost_frames = 0;
-  int repeated_frames = 0;             ///< number of frames that needed smaller steps on the branch
-  std::vector<std::string> neglected;  ///< not used, always empty
+  int repeated_frames = 0;  ///< number of frames that needed smaller steps on the branch
   ForceTrackSummary force;
 };
 
