@@ -36,8 +36,8 @@ using TakeFileCause = std::function<void(const FileCause&)>;
                                               const Eigen::Matrix3Xd& points, double length);
 
 /// Returns a clause that states the origin of the file.
-/// @param way  displacement from the file's points to the scene's [m]
-[[nodiscard]] std::string origin_clause(const Eigen::Vector3d& way);
+/// @param translation  displacement from the file's points to the scene's [m]
+[[nodiscard]] std::string origin_clause(const Eigen::Vector3d& translation);
 
 /// Calls `take` for each single error of a file whose frame is stated to be the scene's: its unit,
 /// axes, origin, direction of arc lengths, pixels, order of points, extent, scale and rotation.

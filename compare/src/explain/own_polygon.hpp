@@ -74,6 +74,6 @@ struct CandidateChain {
 /// no equilibrium.
 /// @param start  initial guess; its arc lengths are those of the chain's points
 [[nodiscard]] std::optional<Shape> chain_at_rest(const Scene& scene, const Shape& start,
-                                                 const CandidateChain& like);
+                                                 const CandidateChain& candidate);
 
 }  // namespace dlo::compare

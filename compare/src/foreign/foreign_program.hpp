@@ -83,9 +83,9 @@ struct SimulatorRun {
 
 /// Checks that each end that a gripper holds is at the gripper: within 1 % of the length, plus the
 /// part of the rod that the file's arc lengths leave out at that end.
-/// @param told  whether the arc lengths were read from the file
+/// @param has_arc_lengths  whether the arc lengths were read from the file
 /// @throws InputError naming the gripper
-void require_held_ends(const Scene& scene, const Shape& laid, bool told);
+void require_held_ends(const Scene& scene, const Shape& aligned, bool has_arc_lengths);
 
 /// Measures the distances of a foreign shape from a reference, in the scene's frame, as `dlo check`
 /// measures a file that contains the whole rod. Sets only rms_m, max_m, rms_over_length and tip_m.

@@ -24,15 +24,15 @@ namespace dlo::compare {
 /// rotation is relative to the pose at `begin`; directions follow great circles. Accelerations jump
 /// at a pose: at the time of the pose, up to rounding, they are those of the leg before it, and
 /// later those of the leg after it.
-/// @param way          trajectory with poses
+/// @param trajectory   trajectory with poses
 /// @param rolls_about  direction at `begin` of a clamp that holds the rod's frame; empty for any
 /// other gripper, for which rolls have no effect
 [[nodiscard]] energy_model::GripMotion trajectory_motion(
-    const Trajectory& way, double begin,
+    const Trajectory& trajectory, double begin,
     const std::optional<Eigen::Vector3d>& rolls_about = std::nullopt);
 
 /// Returns the times of the poses relative to `begin` [s]: MovingRod::breaks.
-[[nodiscard]] std::vector<double> trajectory_breaks(const Trajectory& way, double begin);
+[[nodiscard]] std::vector<double> trajectory_breaks(const Trajectory& trajectory, double begin);
 
 /// Damping of a moving rod.
 struct RodDamping {
