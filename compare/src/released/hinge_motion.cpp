@@ -201,15 +201,14 @@ energy_model::StartingShape released_shape(const ReleasedRod& rod, const SolveOp
 }
 
 ReleasedMotion release_rod(const ReleasedRod& rod, const std::vector<double>& times,
-                           const std::vector<double>& arc_length, int terms,
-                           const SolveOptions& options) {
-  const energy_model::StartingShape start = released_shape(rod, options);
+                           const std::vector<double>& arc_length, int terms) {
+  const energy_model::StartingShape start = released_shape(rod);
   energy_model::MovingRod moving;
   try {
     moving.problem = frame_problem(rod.scene, {});
     moving.inertia = scene_inertia(rod.scene);
     const energy_model::Dynamics moved = energy_model::simulate(
-        moving, start, times, {.terms = terms, .time_limit = options.time_limit});
+        moving, start, times, {.terms = terms, .time_limit = SolveOptions().time_limit});
     if (moved.frames.size() < times.size()) {
       throw ConvergenceError(fmt::format("{}: stopped at {:g} s: {}", rod.scene.file,
                                          times[moved.frames.size()], moved.message));
@@ -256,10 +255,9 @@ std::vector<Eigen::Matrix3Xd> hinge_motion(const ReleasedRod& rod, int segments,
   return frames;
 }
 
-HingeLimit hinge_limit(const ReleasedRod& rod, int segments, const std::vector<double>& times,
-                       const SolveOptions& options) {
+HingeLimit hinge_limit(const ReleasedRod& rod, int segments, const std::vector<double>& times) {
   const auto at_common_points = [&](int factor) {
-    std::vector<Eigen::Matrix3Xd> frames = hinge_motion(rod, factor * segments, times, options);
+    std::vector<Eigen::Matrix3Xd> frames = hinge_motion(rod, factor * segments, times);
     for (Eigen::Matrix3Xd& points : frames) {
       points = Eigen::Matrix3Xd(points(Eigen::all, Eigen::seqN(0, segments + 1, factor)));
     }

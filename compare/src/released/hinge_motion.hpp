@@ -35,8 +35,7 @@ struct ReleasedMotion {
 /// obstacles, or the initial scene has another length or number of grippers;  ConvergenceError if
 /// there is no initial shape, or if the integrator does not reach the last time
 [[nodiscard]] ReleasedMotion release_rod(const ReleasedRod& rod, const std::vector<double>& times,
-                                         const std::vector<double>& arc_length, int terms,
-                                         const SolveOptions& options = {});
+                                         const std::vector<double>& arc_length, int terms);
 
 /// Returns the largest distance of a point at any time between motions with the same times and arc
 /// lengths [m].
@@ -70,7 +69,6 @@ struct HingeLimit {
 /// Computes the limit by Richardson's extrapolation, for errors of orders 2 and 4 in h. The
 /// arguments are those of hinge_motion().
 [[nodiscard]] HingeLimit hinge_limit(const ReleasedRod& rod, int segments,
-                                     const std::vector<double>& times,
-                                     const SolveOptions& options = {});
+                                     const std::vector<double>& times);
 
 }  // namespace dlo::compare
