@@ -66,13 +66,12 @@ CLI::Validator number_check(std::function<double(const std::string&)> read,
                 text = fmt::format("{:.17g}", value);
                 return std::string();
               }
+            } catch (const compare::UnitError& error) {
+              return fmt::format("{}: {}", text, error.what());
             } catch (const compare::InputError& error) {
               problem = error.what();
             }
-            // A message about a unit states all that is allowed.
-            const bool complete = problem.find("unit") != std::string::npos;
-            return fmt::format("{}: {}{}", text, problem,
-                               complete ? "" : fmt::format(" (allowed: {})", allowed));
+            return fmt::format("{}: {} (allowed: {})", text, problem, allowed);
           },
           ""};
 }

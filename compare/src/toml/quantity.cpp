@@ -11,7 +11,6 @@
 #include <utility>
 
 #include "base/number.hpp"
-#include "dlo/compare/error.hpp"
 
 namespace dlo::compare {
 namespace {
@@ -127,21 +126,20 @@ std::string magnitude_problem(double value, Dimension dimension) {
 }
 
 double parse_quantity(std::string_view text, Dimension dimension) {
-  const auto not_a_number = [&] {
+  const auto refuse_text = [&] {
     const std::string list = known_units(dimension);
-    return InputError(
-        list.empty() ? fmt::format("\"{}\" is not a number", text)
-                     : fmt::format("\"{}\" is not a number with a unit (allowed: {})", text, list));
+    if (list.empty()) throw InputError(fmt::format("\"{}\" is not a number", text));
+    throw UnitError(fmt::format("\"{}\" is not a number with a unit (allowed: {})", text, list));
   };
   const std::size_t start = text.find_first_not_of(" \t");
-  if (start == std::string_view::npos) throw not_a_number();
+  if (start == std::string_view::npos) refuse_text();
   std::string_view rest = text.substr(start);
   if (rest.front() == '+') rest.remove_prefix(1);
   const auto [value, length, error] = leading_number<double>(rest);
   if (error == std::errc::result_out_of_range) {
     throw InputError(out_of_range_message(rest.substr(0, length)));
   }
-  if (error != std::errc()) throw not_a_number();
+  if (error != std::errc()) refuse_text();
   rest.remove_prefix(length);
   if (rest.size() > 1 && rest[0] == ',' && rest[1] >= '0' && rest[1] <= '9') {
     throw InputError(fmt::format("\"{}\" has a comma (allowed: a decimal point)", text));
@@ -153,7 +151,7 @@ double parse_quantity(std::string_view text, Dimension dimension) {
   if (!std::isfinite(value)) throw InputError(fmt::format("\"{}\" is not finite", text));
   if (name.empty()) {
     if (dimension == Dimension::number) return value;
-    throw InputError(
+    throw UnitError(
         fmt::format("\"{}\" lacks a unit (allowed: {}; a bare number without quotes is SI)", text,
                     known_units(dimension)));
   }
@@ -161,8 +159,8 @@ double parse_quantity(std::string_view text, Dimension dimension) {
   for (const Unit& unit : units(dimension)) {
     if (names(plain, unit.name)) return value * unit.factor;
   }
-  throw InputError(fmt::format("unknown unit \"{}\" in \"{}\" (allowed: {})", name, text,
-                               units(dimension).empty() ? "none" : known_units(dimension)));
+  throw UnitError(fmt::format("unknown unit \"{}\" in \"{}\" (allowed: {})", name, text,
+                              units(dimension).empty() ? "none" : known_units(dimension)));
 }
 
 }  // namespace dlo::compare

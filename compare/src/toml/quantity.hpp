@@ -5,6 +5,8 @@
 #include <string_view>
 #include <vector>
 
+#include "dlo/compare/error.hpp"
+
 namespace dlo::compare {
 
 /// Physical dimension of a number in a scene file; it determines which units may follow.
@@ -38,6 +40,11 @@ enum class Dimension {
 
 /// Returns the names of the units of a dimension as a list for messages.
 [[nodiscard]] std::string known_units(Dimension dimension);
+
+/// A quantity without a known unit; the message lists all that is allowed.
+class UnitError : public InputError {
+  using InputError::InputError;
+};
 
 /// Returns the value in SI units of "210 GPa", "2 mm" or "-175 deg".
 /// @throws InputError without the file's name: the error and what is allowed

@@ -20,7 +20,7 @@ TEST_F(Command, NumbersOfOptionsAreInTheirRange) {
     expect_error(words({solve, "--time-limit", value}), 2,
                  {"--time-limit", value, "0.001 to 1e+09"});
   }
-  for (const std::string value : {"nan", "inf", "0", "0.2"}) {
+  for (const std::string value : {"nan", "inf", "0", "0.2", "unit"}) {
     expect_error(words({solve, "--rest-tolerance", value}), 2,
                  {"--rest-tolerance", value, "1e-12 to 0.1"});
   }
