@@ -4,8 +4,10 @@
 
 #include <algorithm>
 #include <cmath>
+#include <initializer_list>
 #include <limits>
 #include <optional>
+#include <utility>
 
 #include "dlo/compare/deviation.hpp"
 #include "dlo/compare/effective_modulus.hpp"
@@ -54,22 +56,26 @@ class Diagnosis {
     if (converges || finest().error <= limits::negligible_error) return found_;
     // Discretisation error without a specific cause.
     if (order > limits::nonconverging_order && !is_error_stagnant()) return found_;
-    const auto compare_factors = [this](auto fit, const CardShape& coarser, double largest_share) {
+    using CoarserShapes = std::initializer_list<std::pair<const CardShape&, double>>;
+    const auto compare_factors = [this](auto fit, CoarserShapes coarser_shapes) {
       const std::optional<double> fine = (this->*fit)(finest(), limits::fitted_left);
-      const std::optional<double> coarse =
-          fine ? (this->*fit)(coarser, largest_share) : std::nullopt;
-      if (!coarse) return false;
-      found_.push_back(
-          cause_of_factors(scene_, {coarser.points, *coarse}, {finest().points, *fine}));
-      return true;
+      if (!fine) return false;
+      for (const auto& [coarser, largest_share] : coarser_shapes) {
+        const std::optional<double> coarse = (this->*fit)(coarser, largest_share);
+        if (!coarse) continue;
+        found_.push_back(
+            cause_of_factors(scene_, {coarser.points, *coarse}, {finest().points, *fine}));
+        return true;
+      }
+      return false;
     };
     const auto springs = &Diagnosis::spring_factor;
     const auto modulus = &Diagnosis::modulus_factor;
     (void)(find_neglected_property() || stretches || find_other_equilibrium() ||
-           compare_factors(springs, coarsest(), limits::fitted_left) || find_imbalance() ||
-           compare_factors(modulus, coarsest(), limits::fitted_left) ||
-           compare_factors(modulus, second_finest(), limits::coarse_left) ||
-           compare_factors(springs, second_finest(), limits::coarse_left) ||
+           compare_factors(springs, {{coarsest(), limits::fitted_left}}) || find_imbalance() ||
+           compare_factors(modulus, {{coarsest(), limits::fitted_left},
+                                     {second_finest(), limits::coarse_left}}) ||
+           compare_factors(springs, {{second_finest(), limits::coarse_left}}) ||
            find_scene_cause(limits::fitted_left));
     return found_;
   }
