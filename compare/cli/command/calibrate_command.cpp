@@ -1,5 +1,3 @@
-#include <fmt/format.h>
-
 #include <algorithm>
 #include <memory>
 #include <optional>
@@ -11,7 +9,6 @@
 #include "dlo/compare/fitted_material.hpp"
 #include "fit/chain_springs.hpp"
 #include "format/calibration_output.hpp"
-#include "format/json.hpp"
 #include "format/result_output.hpp"
 #include "option/command_line.hpp"
 #include "option/output.hpp"

@@ -1,5 +1,3 @@
-#include <fmt/format.h>
-
 #include <functional>
 #include <memory>
 #include <string>
@@ -10,7 +8,6 @@
 #include "command/commands.hpp"
 #include "dlo/compare/check.hpp"
 #include "dlo/compare/error.hpp"
-#include "format/json.hpp"
 #include "format/result_output.hpp"
 #include "option/command_line.hpp"
 #include "option/output.hpp"

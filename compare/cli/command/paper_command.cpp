@@ -3,7 +3,6 @@
 #include "command/commands.hpp"
 #include "option/command_line.hpp"
 #include "option/output.hpp"
-#include "option/scene_options.hpp"
 #include "option/terminal.hpp"
 #include "paper/paper.hpp"
 #include "series/study_output.hpp"

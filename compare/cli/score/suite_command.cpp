@@ -10,8 +10,6 @@
 #include "option/command_line.hpp"
 #include "option/output.hpp"
 #include "option/plot.hpp"
-#include "option/scene_options.hpp"
-#include "option/share.hpp"
 #include "option/terminal.hpp"
 #include "series/study_output.hpp"
 #include "suite/card.hpp"

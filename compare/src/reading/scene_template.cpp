@@ -8,7 +8,6 @@
 #include <filesystem>
 #include <optional>
 #include <string_view>
-#include <system_error>
 #include <utility>
 
 #include "base/input_file.hpp"
@@ -16,10 +15,8 @@
 #include "base/quote.hpp"
 #include "base/text.hpp"
 #include "dlo/compare/error.hpp"
-#include "dlo/compare/shape_file.hpp"
 #include "reading/read_scene.hpp"
 #include "toml/strict_table.hpp"
-#include "trajectory/trajectory_files.hpp"
 
 namespace dlo::compare {
 namespace {

@@ -5,8 +5,6 @@
 
 #include "dlo/compare/scene.hpp"
 #include "dlo/compare/shape.hpp"
-#include "dlo/compare/solution.hpp"
-#include "dlo/compare/solve.hpp"
 #include "dlo/energy_model/equilibrium.hpp"
 #include "recording/motion_residuals.hpp"
 #include "suite/battery.hpp"
