@@ -60,7 +60,8 @@ std::vector<std::string> kinds_of(const Track& result) {
   return kinds;
 }
 
-double tip_error_at_end(const Scene& scene, double rate) {
+/// Returns the difference of the work and the increase of energy of a track without events [J].
+double energy_balance_error(const Scene& scene, double rate) {
   const Track result = track(scene, at_rate(rate));
   const TrackFrame& last = result.frames.back();
   EXPECT_TRUE(result.events.empty());
@@ -73,8 +74,8 @@ double tip_error_at_end(const Scene& scene, double rate) {
 /// @param off   allowed difference from 4 of the ratio of the errors at `rate` and at twice the
 /// rate
 void expect_second_order(const Scene& scene, double rate, double most, double off) {
-  const double coarse = tip_error_at_end(scene, rate);
-  const double fine = tip_error_at_end(scene, 2 * rate);
+  const double coarse = energy_balance_error(scene, rate);
+  const double fine = energy_balance_error(scene, 2 * rate);
   EXPECT_LT(coarse, most);
   EXPECT_NEAR(coarse / fine, 4, off);
 }
