@@ -7,6 +7,7 @@
 #include <random>
 
 #include "dlo/energy_model/exact.hpp"
+#include "joint_laws.hpp"
 #include "solved.hpp"
 
 namespace dlo::energy_model {
@@ -24,11 +25,6 @@ ChainProblem heavy_chain(JointLaw law, int segments, double gamma) {
   problem.law = law;
   problem.stiffness = law == JointLaw::paper ? 20 : 1;
   return problem;
-}
-
-const char* chain_law_name(JointLaw law) {
-  constexpr const char* names[] = {"paper", "hooke", "linear", "binormal"};
-  return names[static_cast<std::size_t>(law)];
 }
 
 class ChainOfEveryLaw : public testing::TestWithParam<JointLaw> {};
@@ -138,10 +134,8 @@ TEST_P(ChainOfEveryLaw, ConvergesForManyPointsAndSoftRods) {
   }
 }
 
-INSTANTIATE_TEST_SUITE_P(Laws, ChainOfEveryLaw,
-                         testing::Values(JointLaw::paper, JointLaw::hooke, JointLaw::linear,
-                                         JointLaw::binormal),
-                         [](const auto& instance) { return chain_law_name(instance.param); });
+INSTANTIATE_TEST_SUITE_P(Laws, ChainOfEveryLaw, testing::ValuesIn(test::joint_laws),
+                         [](const auto& instance) { return test::name_of(instance.param); });
 
 TEST(Chain, StopsAtItsTimeLimit) {
   ChainProblem problem;

@@ -8,6 +8,7 @@
 #include <numbers>
 #include <random>
 
+#include "joint_laws.hpp"
 #include "polygon/polygon_energy.hpp"
 #include "solved.hpp"
 
@@ -46,11 +47,6 @@ Eigen::Matrix3Xd arch(const PolygonProblem& problem, double span, double turned)
     points.col(i) << span * t, y * std::cos(turned), y * std::sin(turned);
   }
   return points;
-}
-
-const char* polygon_law_name(JointLaw law) {
-  constexpr const char* names[] = {"paper", "hooke", "linear", "binormal"};
-  return names[static_cast<std::size_t>(law)];
 }
 
 class PolygonOfEveryLaw : public testing::TestWithParam<JointLaw> {};
@@ -99,14 +95,11 @@ TEST_P(PolygonOfEveryLaw, RestsInFewStepsAndBalancesItsForces) {
   }
 }
 
-INSTANTIATE_TEST_SUITE_P(Laws, PolygonOfEveryLaw,
-                         testing::Values(JointLaw::paper, JointLaw::hooke, JointLaw::linear,
-                                         JointLaw::binormal),
-                         [](const auto& instance) { return polygon_law_name(instance.param); });
+INSTANTIATE_TEST_SUITE_P(Laws, PolygonOfEveryLaw, testing::ValuesIn(test::joint_laws),
+                         [](const auto& instance) { return test::name_of(instance.param); });
 
 TEST(Polygon, IsTheRigidChainWhenItHasOneClamp) {
-  for (const JointLaw law :
-       {JointLaw::paper, JointLaw::hooke, JointLaw::linear, JointLaw::binormal}) {
+  for (const JointLaw law : test::joint_laws) {
     for (const double gamma : {0.1, 2.0, 30.0}) {
       ChainProblem chain;
       const Eigen::Index n = 20;
