@@ -33,10 +33,6 @@ struct SoftRod : SteelRod {
   [[nodiscard]] Rod rod() const { return SteelRod::rod({BendingLaw::hooke, EI}, AE); }
 };
 
-double rms_between(const Eigen::Matrix3Xd& a, const Eigen::Matrix3Xd& b) {
-  return (a - b).norm() / std::sqrt(static_cast<double>(a.cols()));
-}
-
 Wall floor_at(double height, double stiffness) {
   return {.point = {0, height, 0}, .normal = {0, 1, 0}, .stiffness = stiffness};
 }
@@ -90,7 +86,7 @@ TEST(ImplicitStepper, RestsWhereTheAutomaticStepperDoes) {
                          {});
     const RelaxResult other = automatic.relax({.tolerance = 1e-8});
     ASSERT_EQ(other.status, RelaxStatus::at_rest) << one.name;
-    EXPECT_LT(rms_between(simulation.points(), automatic.points()),
+    EXPECT_LT(rms_distance(simulation.points(), automatic.points()),
               other.remaining_error + result.remaining_error + 1e-13)
         << one.name;
   }
@@ -105,9 +101,9 @@ TEST(ImplicitStepper, BringsASoftRodToRestInTenSolvesWhateverItsPoints) {
     EXPECT_LE(rest.steps, 10) << points;
     Simulation simulation(soft.rod(), soft.straight(), implicit_options());
     while (simulation.steps() < 5) ASSERT_EQ(simulation.step().status, StepStatus::good);
-    EXPECT_LT(rms_between(simulation.points(), reference.points()), 1e-3 * soft.length) << points;
+    EXPECT_LT(rms_distance(simulation.points(), reference.points()), 1e-3 * soft.length) << points;
     while (simulation.steps() < 7) ASSERT_EQ(simulation.step().status, StepStatus::good);
-    EXPECT_LT(rms_between(simulation.points(), reference.points()), 1e-7 * soft.length) << points;
+    EXPECT_LT(rms_distance(simulation.points(), reference.points()), 1e-7 * soft.length) << points;
   }
 }
 
@@ -131,7 +127,7 @@ TEST(ImplicitStepper, DoesTheSameInEveryFrameOfReference) {
     Simulation there(rod, moved(one.start), implicit_options());
     ASSERT_EQ(here.relax({.tolerance = 1e-9}).status, RelaxStatus::at_rest) << one.name;
     ASSERT_EQ(there.relax({.tolerance = 1e-9}).status, RelaxStatus::at_rest) << one.name;
-    EXPECT_LT(rms_between(moved(here.points()), there.points()), 1e-9) << one.name;
+    EXPECT_LT(rms_distance(moved(here.points()), there.points()), 1e-9) << one.name;
   }
 }
 
@@ -149,7 +145,7 @@ TEST(ImplicitStepper, MovesARestingRodWithItsGripperInOneSolve) {
   // Rounding of the positions displaces the slowest mode, before the movement and after it.
   const double rounding = check_equilibrium(simulation.rod(), simulation.points()).rounding_error;
   EXPECT_LT(rounding, 1e-7 * soft.length);
-  EXPECT_LT(rms_between(simulation.points(), rest.colwise() + way),
+  EXPECT_LT(rms_distance(simulation.points(), rest.colwise() + way),
             1e-10 * soft.length + 2 * rounding);
 }
 
@@ -172,7 +168,7 @@ TEST(ImplicitStepper, FollowsAGripperWithinAMillionthOfTheLengthByOneSolveAFrame
     if (frame % 20 != 0) continue;
     Simulation rest = simulation;
     ASSERT_EQ(rest.relax({.tolerance = 1e-9}).status, RelaxStatus::at_rest);
-    EXPECT_LT(rms_between(simulation.points(), rest.points()), 1e-6 * soft.length) << frame;
+    EXPECT_LT(rms_distance(simulation.points(), rest.points()), 1e-6 * soft.length) << frame;
   }
   EXPECT_EQ(simulation.steps() - before, frames);
 }
@@ -195,7 +191,7 @@ TEST(ImplicitStepper, ArrivesWithAGripperThatJumpsAndTurnsRound) {
   straight.row(1).array() += 0.5;
   Simulation direct(turned, straight, implicit_options());
   ASSERT_EQ(direct.relax().status, RelaxStatus::at_rest);
-  EXPECT_LT(rms_between(simulation.points(), direct.points()), 2e-7 * soft.length);
+  EXPECT_LT(rms_distance(simulation.points(), direct.points()), 2e-7 * soft.length);
 }
 
 TEST(ImplicitStepper, LeavesABalancedRodStandingOnlyWhereItIsStable) {
@@ -243,7 +239,7 @@ TEST(ImplicitStepper, StaysStableWithTimeStepsFarBeyondTheFastestMode) {
   ASSERT_EQ(simulation.relax({.tolerance = 1e-6}).status, RelaxStatus::at_rest);
   Simulation rest(rod, soft.straight(), implicit_options());
   ASSERT_EQ(rest.relax().status, RelaxStatus::at_rest);
-  EXPECT_LT(rms_between(simulation.points(), rest.points()), 2e-6 * soft.length);
+  EXPECT_LT(rms_distance(simulation.points(), rest.points()), 2e-6 * soft.length);
 }
 
 TEST(ImplicitStepper, RefusesWhatItCannotDo) {

@@ -41,10 +41,6 @@ Start between_pins(Eigen::Index points, double apart, double c_c, const Bending&
   return start;
 }
 
-double rms_distance(const Eigen::Matrix3Xd& a, const Eigen::Matrix3Xd& b) {
-  return (a - b).norm() / std::sqrt(static_cast<double>(a.cols()));
-}
-
 /// Compares the shape after relax() with that after four times as many further steps.
 void expect_rest(const Start& start, const std::string& what, double tolerance = 1e-7) {
   Simulation simulation(start.rod, start.points, {});

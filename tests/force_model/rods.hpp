@@ -42,4 +42,9 @@ struct SteelRod {
   }
 };
 
+/// Returns the root mean square of the distances of points.
+inline double rms_distance(const Eigen::Matrix3Xd& a, const Eigen::Matrix3Xd& b) {
+  return (a - b).norm() / std::sqrt(static_cast<double>(a.cols()));
+}
+
 }  // namespace dlo::test
