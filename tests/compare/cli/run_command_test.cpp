@@ -11,7 +11,6 @@
 #include <fstream>
 #include <string>
 #include <thread>
-#include <vector>
 
 #include "command_fixture.hpp"
 #include "dlo/compare/error.hpp"
