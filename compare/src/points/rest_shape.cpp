@@ -1,16 +1,16 @@
 #include "dlo/compare/rest_shape.hpp"
 
 #include <fmt/format.h>
+#include <gsl/gsl_multifit_nlinear.h>
 
-#include <Eigen/Cholesky>
 #include <Eigen/Geometry>
 #include <Eigen/SVD>
 #include <algorithm>
 #include <cmath>
 #include <limits>
 #include <numbers>
-#include <utility>
 
+#include "base/gsl.hpp"
 #include "dlo/compare/error.hpp"
 
 namespace dlo::compare {
@@ -26,24 +26,18 @@ using Eigen::Vector3d;
 constexpr Index most_fitted_points = 150;
 /// Distance from a plane, as a share of the length, up to which points lie in the plane.
 constexpr double plane_share = 1e-6;
-/// Distance of the farthest point, as a share of the length, below which no more arcs are tried.
-constexpr double sufficient_accuracy_share = 1e-7;
+/// Square root of the sum of squared residuals below which no more arcs are tried.
+constexpr double sufficient_accuracy = 1e-7;
 /// Largest relative difference between the length of the points' curve and that of the rod.
 constexpr double length_tolerance = 0.05;
 /// Weight of an angle [rad] in the residual, compared with a distance divided by the length: the
-/// length of the shortest of equal arcs, as a share of the rod.
+/// length of the shortest arcs, as a share of the rod.
 constexpr double angle_weight = 1.0 / most_rest_arcs;
 
 /// Position and frame of a rod with the strains of an arc, at some arc length.
 struct ArcPlace {
   Vector3d point;
   Matrix3d frame;  // d1, d2, t
-};
-
-/// A sequence of arcs, with the position and frame where the first one begins.
-struct Arcs {
-  ArcPlace begin;
-  std::vector<RestShape::Arc> arcs;
 };
 
 /// Points to fit by arcs, and what is known of their arc lengths.
@@ -64,19 +58,16 @@ struct ArcTarget {
   /// independent. It is also the number of strains of an arc.
   [[nodiscard]] Index numbers() const { return planar ? 1 : rows() - 1; }
 
+  /// Returns the number of components of rotation and position that a fit changes.
+  [[nodiscard]] Index pose_parameters() const { return planar ? 3 : 6; }
+  /// Returns the number of parameters of a number of arcs and of their pose.
+  [[nodiscard]] Index parameters(Index arcs) const { return pose_parameters() + numbers() * arcs; }
+
   /// Whether a point's arc length is unknown and follows from the nearest point of the arcs.
   [[nodiscard]] bool has_free_arc_length(Index i) const {
     return !has_arc_lengths && i > 0 && i + 1 < points.cols();
   }
 };
-
-/// Stopping criteria of minimise_arc_residual().
-struct ArcFitLimits {
-  int most_steps;
-  double least_gain;  // smallest relative decrease of the sum of squares in a step
-};
-constexpr ArcFitLimits candidate_limits{10, 3e-2};
-constexpr ArcFitLimits result_limits{30, 1e-6};
 
 /// Returns position and frame at arc length `s` from the begin of an arc of constant strain.
 /// @param s  negative before the begin
@@ -96,20 +87,18 @@ ArcPlace along_arc(const ArcPlace& begin, const Vector3d& strain, double s) {
           begin.frame * Eigen::AngleAxisd(angle, axis).toRotationMatrix()};
 }
 
-/// Returns positions and frames of arcs at arc lengths.
-std::vector<ArcPlace> evaluate_arcs(const Arcs& on, const std::vector<double>& s) {
-  const std::vector<RestShape::Arc>& arcs = on.arcs;
-  const auto begin_of = [&](std::size_t k) { return k > 0 ? arcs[k - 1].end : 0.0; };
-  std::vector<ArcPlace> begins = {on.begin};
-  for (std::size_t k = 0; k + 1 < arcs.size(); ++k) {
-    begins.push_back(along_arc(begins[k], arcs[k].strain, arcs[k].end - begin_of(k)));
+/// Returns positions and frames of arcs of equal length at arc lengths.
+std::vector<ArcPlace> evaluate_arcs(const RestShape& shape, const std::vector<double>& s) {
+  const double h = shape.arcs.front().end;
+  std::vector<ArcPlace> begins = {{shape.begin, shape.first_frame}};
+  for (const RestShape::Arc& arc : shape.arcs) {
+    begins.push_back(along_arc(begins.back(), arc.strain, h));
   }
   std::vector<ArcPlace> result;
   result.reserve(s.size());
   for (const double at : s) {
-    std::size_t k = 0;
-    while (k + 1 < arcs.size() && at >= arcs[k].end) ++k;
-    result.push_back(along_arc(begins[k], arcs[k].strain, at - begin_of(k)));
+    const auto k = std::min(static_cast<std::size_t>(at / h), shape.arcs.size() - 1);
+    result.push_back(along_arc(begins[k], shape.arcs[k].strain, at - static_cast<double>(k) * h));
   }
   return result;
 }
@@ -117,7 +106,7 @@ std::vector<ArcPlace> evaluate_arcs(const Arcs& on, const std::vector<double>& s
 /// Returns the residual: the vectors from the points to the arcs, divided by the length, three rows
 /// per point; with frames a fourth row, the angle of d1 times angle_weight. A vector of a point
 /// that has_free_arc_length() has no component along the arc.
-Eigen::VectorXd arc_residual(const ArcTarget& target, const Arcs& arcs) {
+Eigen::VectorXd arc_residual(const ArcTarget& target, const RestShape& arcs) {
   const std::vector<ArcPlace> places = evaluate_arcs(arcs, target.s);
   const Index rows = target.rows();
   Eigen::VectorXd r(rows * target.points.cols());
@@ -136,7 +125,7 @@ Eigen::VectorXd arc_residual(const ArcTarget& target, const Arcs& arcs) {
 }
 
 /// Replaces unknown arc lengths by those of the nearest points of the arcs.
-void update_arc_lengths(ArcTarget& target, const Arcs& arcs) {
+void update_arc_lengths(ArcTarget& target, const RestShape& arcs) {
   const std::vector<ArcPlace> places = evaluate_arcs(arcs, target.s);
   for (Index i = 0; i < target.points.cols(); ++i) {
     if (!target.has_free_arc_length(i)) continue;
@@ -146,84 +135,77 @@ void update_arc_lengths(ArcTarget& target, const Arcs& arcs) {
   }
 }
 
-/// Returns the number of parameters of a number of arcs and their pose.
-Index arc_parameters(const ArcTarget& target, std::size_t arcs) {
-  const auto n = static_cast<Index>(arcs);
-  return (target.planar ? 3 : 6) + target.numbers() * n + n - 1;
-}
-
-/// Returns the arcs after a step of all their parameters. Rotations and strains times length are in
-/// radians; the position and the arc ends are divided by the length.
-Arcs stepped_arcs(const ArcTarget& target, Arcs arcs, const Eigen::VectorXd& step) {
-  Index k = 0;
-  const double l = target.length;
-  ArcPlace& begin = arcs.begin;
+/// Returns the arcs with all their parameters changed. Rotations, and strains times length, are in
+/// radians; positions are divided by the length.
+RestShape changed_arcs(const ArcTarget& target, RestShape arcs, const Eigen::VectorXd& change) {
+  Vector3d turn = target.normal;
+  Vector3d shift;
   if (target.planar) {
-    begin.frame = Eigen::AngleAxisd(step[k], target.normal) * begin.frame;
-    const Vector3d across = begin.frame.col(0);
-    begin.point += l * (step[k + 1] * across + step[k + 2] * begin.frame.col(2));
-    k += 3;
+    turn *= change[0];
+    shift = change[1] * arcs.first_frame.col(0) + change[2] * arcs.first_frame.col(2);
   } else {
-    const Vector3d turn = step.segment<3>(k);
-    begin.frame = Eigen::AngleAxisd(turn.norm(), turn.stableNormalized()) * begin.frame;
-    begin.point += l * step.segment<3>(k + 3);
-    k += 6;
+    turn = change.head<3>();
+    shift = change.segment<3>(3);
   }
-  for (RestShape::Arc& arc : arcs.arcs) {
-    if (!target.planar) arc.strain.x() += step[k++] / l;
-    arc.strain.y() += step[k++] / l;
-    if (target.twists()) arc.strain.z() += step[k++] / l;
+  arcs.first_frame = Eigen::AngleAxisd(turn.norm(), turn.stableNormalized()) * arcs.first_frame;
+  arcs.begin += target.length * shift;
+  const Index first = target.planar ? 1 : 0;
+  for (Index k = target.pose_parameters(); RestShape::Arc & arc : arcs.arcs) {
+    arc.strain.segment(first, target.numbers()) +=
+        change.segment(k, target.numbers()) / target.length;
+    k += target.numbers();
   }
-  for (std::size_t i = 0; i + 1 < arcs.arcs.size(); ++i) arcs.arcs[i].end += l * step[k++];
   return arcs;
 }
 
-bool in_order(const ArcTarget& target, const Arcs& arcs) {
-  double before = 0;
-  return std::ranges::all_of(arcs.arcs, [&](const RestShape::Arc& arc) {
-    return arc.end - std::exchange(before, arc.end) >= 1e-4 * target.length;
-  });
-}
+/// Arcs that GSL changes to fit a target. Its parameters are 1 plus the changes, because its
+/// differences are relative to the parameters.
+struct ArcFit {
+  const ArcTarget& target;
+  const RestShape& guess;
 
-/// Fits arcs by the Levenberg-Marquardt method; unknown arc lengths are updated with them.
-/// @return the sum of squared residuals, which are distances divided by the length
-double minimise_arc_residual(ArcTarget& target, Arcs& arcs, const ArcFitLimits& effort) {
-  constexpr double h = 1e-7;  // difference of a parameter, divided by its unit
-  const Index count = arc_parameters(target, arcs.arcs.size());
-  double damping = 1e-3;
-  double sum = arc_residual(target, arcs).squaredNorm();
-  for (int step = 0; step < effort.most_steps; ++step) {
-    // Returns the residual of other arcs; points slide along them.
-    const auto residual = [&target](const Arcs& trial) {
-      ArcTarget own = target;
-      update_arc_lengths(own, trial);
-      return std::pair{arc_residual(own, trial), std::move(own.s)};
-    };
-    const Eigen::VectorXd r = residual(arcs).first;
-    Eigen::MatrixXd J(r.size(), count);
-    for (Index k = 0; k < count; ++k) {
-      const Arcs perturbed = stepped_arcs(target, arcs, h * Eigen::VectorXd::Unit(count, k));
-      J.col(k) = (residual(perturbed).first - r) / h;
-    }
-    const Eigen::MatrixXd H = J.transpose() * J;
-    const double before = sum;
-    for (int tries = 0; tries < 8 && !(sum < before); ++tries) {
-      Eigen::MatrixXd damped = H;
-      damped.diagonal() *= 1 + damping;
-      damped.diagonal().array() += 1e-14 * H.diagonal().maxCoeff();
-      Arcs next = stepped_arcs(target, arcs, damped.ldlt().solve(-J.transpose() * r));
-      damping *= 8;
-      if (!in_order(target, next)) continue;
-      auto [after, s] = residual(next);
-      if (!(after.squaredNorm() < before)) continue;
-      sum = after.squaredNorm();
-      arcs = std::move(next);
-      target.s = std::move(s);
-      damping = std::max(damping / 80, 1e-12);
-    }
-    if (!(sum < before) || sum > (1 - effort.least_gain) * before) break;
+  [[nodiscard]] RestShape arcs(const gsl_vector* x) const {
+    const Eigen::Map<const Eigen::VectorXd, 0, Eigen::InnerStride<>> parameters(
+        x->data, static_cast<Index>(x->size), Eigen::InnerStride<>(static_cast<Index>(x->stride)));
+    return changed_arcs(target, guess, parameters.array() - 1);
   }
-  return sum;
+
+  static int residual(const gsl_vector* x, void* fit, gsl_vector* f) {
+    const auto& [target, guess] = *static_cast<const ArcFit*>(fit);
+    const Eigen::VectorXd r = arc_residual(target, ArcFit{target, guess}.arcs(x));
+    for (Index i = 0; i < r.size(); ++i) gsl_vector_set(f, static_cast<std::size_t>(i), r[i]);
+    return GSL_SUCCESS;
+  }
+};
+
+/// Fits arcs by nonlinear least squares, then unknown arc lengths to them, three times.
+/// @return the sum of squared residuals, which are distances divided by the length
+double minimise_arc_residual(ArcTarget& target, RestShape& arcs) {
+  silence_gsl();
+  const auto n = static_cast<std::size_t>(target.rows() * target.points.cols());
+  const auto p = static_cast<std::size_t>(target.parameters(std::ssize(arcs.arcs)));
+  const gsl_multifit_nlinear_parameters parameters = gsl_multifit_nlinear_default_parameters();
+  const auto workspace =
+      gsl_owned(gsl_multifit_nlinear_alloc(gsl_multifit_nlinear_trust, &parameters, n, p),
+                gsl_multifit_nlinear_free);
+  const auto start = gsl_owned(gsl_vector_alloc(p), gsl_vector_free);
+  gsl_vector_set_all(start.get(), 1);
+  for (int round = 0; round < (target.has_arc_lengths ? 1 : 3); ++round) {
+    const RestShape guess = arcs;
+    ArcFit fit{target, guess};
+    gsl_multifit_nlinear_fdf function{};
+    function.f = ArcFit::residual;
+    function.n = n;
+    function.p = p;
+    function.params = &fit;
+    int reason = 0;
+    // A fit that stops early has a larger error, which is stated.
+    if (gsl_multifit_nlinear_init(start.get(), &function, workspace.get()) != GSL_SUCCESS) break;
+    (void)gsl_multifit_nlinear_driver(30, 1e-10, 0, 0, nullptr, nullptr, &reason, workspace.get());
+    arcs = fit.arcs(gsl_multifit_nlinear_position(workspace.get()));
+    update_arc_lengths(target, arcs);
+  }
+  return arc_residual(target, arcs).squaredNorm();
 }
 
 /// Strains at the inner points of a polyline, in frames from given directors or else in frames
@@ -271,58 +253,30 @@ Profile profile_of(const ArcTarget& target) {
   return profile;
 }
 
-/// Returns the indices at which a profile is cut into intervals of constant strain. The first index
-/// is the cut that reduces the sum of squares most, and so on.
-std::vector<Index> best_cuts(const Eigen::Matrix3Xd& strain, std::size_t most) {
-  const Index n = strain.cols();
-  Eigen::Matrix3Xd sums = Eigen::Matrix3Xd::Zero(3, n + 1);
-  for (Index j = 0; j < n; ++j) sums.col(j + 1) = sums.col(j) + strain.col(j);
-  // Part of the sum of squares that the mean of an interval explains.
-  const auto explained = [&](Index a, Index b) {
-    return (sums.col(b) - sums.col(a)).squaredNorm() / static_cast<double>(b - a);
+/// Returns arcs of equal length with the mean strains of the profile.
+RestShape first_guess(const ArcTarget& target, const Profile& profile, int count) {
+  RestShape guess;
+  const auto first_joint_after = [&](double s) {  // joint j is at point j + 1
+    return std::lower_bound(target.s.begin() + 1, target.s.end() - 1, s) - target.s.begin() - 1;
   };
-  std::vector<Index> cuts;
-  std::vector<Index> bounds = {0, n};
-  while (cuts.size() < most) {
-    double most_gain = -1;
-    Index best = 0;
-    for (std::size_t p = 0; p + 1 < bounds.size(); ++p) {
-      const Index a = bounds[p];
-      const Index b = bounds[p + 1];
-      for (Index c = a + 1; c < b; ++c) {
-        const double gain = explained(a, c) + explained(c, b) - explained(a, b);
-        if (gain > most_gain) {
-          most_gain = gain;
-          best = c;
-        }
-      }
-    }
-    if (best == 0) break;
-    cuts.push_back(best);
-    bounds.insert(std::upper_bound(bounds.begin(), bounds.end(), best), best);
-  }
-  return cuts;
-}
-
-Arcs first_guess(const ArcTarget& target, const Profile& profile, std::vector<Index> cuts) {
-  std::sort(cuts.begin(), cuts.end());
-  cuts.push_back(profile.strain.cols());
-  Arcs guess;
-  Index before = 0;
-  for (const Index cut : cuts) {
-    RestShape::Arc arc;
-    arc.strain = profile.strain.middleCols(before, cut - before).rowwise().mean();
+  for (int k = 0; k < count; ++k) {
+    const double end = (k + 1) * target.length / count;
+    const Index joint = first_joint_after(k * target.length / count);
+    const Index joints = std::max<Index>(first_joint_after(end) - joint, 1);
+    RestShape::Arc arc{end,
+                       profile.strain.middleCols(std::min(joint, profile.strain.cols() - 1), joints)
+                           .rowwise()
+                           .mean()};
     if (target.planar) arc.strain.x() = 0;
     if (!target.twists()) arc.strain.z() = 0;
-    // Joint j is at point j + 1.
-    const auto i = static_cast<std::size_t>(cut);
-    arc.end = cut == cuts.back() ? target.length : (target.s[i] + target.s[i + 1]) / 2;
     guess.arcs.push_back(arc);
-    before = cut;
   }
-  guess.begin = {target.points.col(0), profile.first_frame};
+  guess.arcs.back().end = target.length;
+  guess.begin = target.points.col(0);
   // The first chord has the direction of the arc's tangent in the middle of the chord.
-  guess.begin.frame = along_arc(guess.begin, guess.arcs.front().strain, -target.s[1] / 2).frame;
+  guess.first_frame =
+      along_arc({guess.begin, profile.first_frame}, guess.arcs.front().strain, -target.s[1] / 2)
+          .frame;
   return guess;
 }
 
@@ -395,10 +349,10 @@ std::vector<double> all_arc_lengths(const std::vector<Index>& chosen,
 }
 
 /// Computes the errors of a rest shape over all measured points, not only the fitted ones.
-void set_rest_shape_errors(ArcTarget all, const Arcs& arcs, RestShape& shape) {
+void set_rest_shape_errors(ArcTarget all, RestShape& shape) {
   constexpr int projection_rounds = 5;
-  for (int i = 0; i < projection_rounds; ++i) update_arc_lengths(all, arcs);
-  const std::vector<ArcPlace> places = evaluate_arcs(arcs, all.s);
+  for (int i = 0; i < projection_rounds; ++i) update_arc_lengths(all, shape);
+  const std::vector<ArcPlace> places = evaluate_arcs(shape, all.s);
   double sum = 0;
   for (Index i = 0; i < all.points.cols(); ++i) {
     const ArcPlace& at = places[static_cast<std::size_t>(i)];
@@ -414,18 +368,12 @@ void set_rest_shape_errors(ArcTarget all, const Arcs& arcs, RestShape& shape) {
   shape.rms_error = std::sqrt(sum / static_cast<double>(all.points.cols()));
 }
 
-/// Returns the largest norm of the residual of one point, including its frame.
-double largest_point_residual(const ArcTarget& target, const Arcs& arcs) {
-  const Eigen::VectorXd r = arc_residual(target, arcs);
-  return r.reshaped(target.rows(), target.points.cols()).colwise().norm().maxCoeff();
-}
-
 /// Returns Schwarz's criterion (BIC) divided by the number of residuals. A constant of the size of
 /// rounding keeps the logarithm finite.
-double schwarz_criterion(const ArcTarget& target, std::size_t arcs, double sum) {
+double schwarz_criterion(const ArcTarget& target, int arcs, double sum) {
   const auto n = static_cast<double>(target.points.cols() * target.numbers());
   constexpr double rounding = 1e-20;
-  const auto p = static_cast<double>(arc_parameters(target, arcs));
+  const auto p = static_cast<double>(target.parameters(arcs));
   return std::log(sum / n + rounding) + p * std::log(n) / n;
 }
 
@@ -465,48 +413,26 @@ double set_target_arc_lengths(const MeasuredShape& given, const std::vector<Inde
 /// Fitted arcs, and the target with the arc lengths found for them.
 struct FittedArcs {
   ArcTarget target;
-  Arcs arcs;
-  double sum = std::numeric_limits<double>::infinity();  ///< sum of the squared residuals
+  RestShape arcs;
 };
-
-/// Returns the better fit of two initial guesses: arcs cut at jumps of the points' curvature, which
-/// noise may hide, and arcs of equal length.
-FittedArcs fit_arcs(const ArcTarget& target, const Profile& profile, std::vector<Index> cuts) {
-  const auto attempt = [&] {
-    FittedArcs fit{target, first_guess(target, profile, cuts)};
-    fit.sum = minimise_arc_residual(fit.target, fit.arcs, candidate_limits);
-    return fit;
-  };
-  FittedArcs at_jumps = attempt();
-  const auto arcs = static_cast<Index>(cuts.size()) + 1;
-  for (Index k = 1; k < arcs; ++k) {
-    cuts[static_cast<std::size_t>(k) - 1] = k * profile.strain.cols() / arcs;
-  }
-  if (arcs == 1) return at_jumps;
-  FittedArcs equal = attempt();
-  return equal.sum < at_jumps.sum ? equal : at_jumps;
-}
 
 /// Returns the fit with the number of arcs that Schwarz's criterion selects.
 FittedArcs best_arcs(const ArcTarget& target, const Profile& profile) {
-  const std::vector<Index> cuts = best_cuts(profile.strain, most_rest_arcs - 1);
-  const Index residuals = target.points.cols() * target.numbers();
-  FittedArcs best, last;
+  FittedArcs best;
   double least = std::numeric_limits<double>::infinity();
   int worse = 0;
-  for (const std::size_t arcs : {1, 2, 3, 4, 6, 8, 12, 16, 24, most_rest_arcs}) {
-    if (arcs > 1 && (arcs - 1 > cuts.size() || 2 * arc_parameters(target, arcs) > residuals)) break;
-    const auto end = cuts.begin() + static_cast<std::ptrdiff_t>(arcs - 1);
-    last = fit_arcs(target, profile, {cuts.begin(), end});
-    const double value = schwarz_criterion(target, arcs, last.sum);
+  for (const int arcs : {1, 2, 3, 4, 6, 8, 12, 16, 24, most_rest_arcs}) {
+    if (arcs > 1 && 2 * target.parameters(arcs) > target.points.cols() * target.numbers()) break;
+    FittedArcs fit{target, first_guess(target, profile, arcs)};
+    const double sum = minimise_arc_residual(fit.target, fit.arcs);
+    const double value = schwarz_criterion(target, arcs, sum);
     worse = value < least ? 0 : worse + 1;
     if (value < least) {
       least = value;
-      best = last;
+      best = std::move(fit);
     }
     constexpr int most_worse = 3;
-    if (worse == most_worse) break;
-    if (largest_point_residual(last.target, last.arcs) <= sufficient_accuracy_share) break;
+    if (worse == most_worse || sum <= std::pow(sufficient_accuracy, 2)) break;
   }
   return best;
 }
@@ -531,14 +457,11 @@ RestShape fit_rest_shape(const MeasuredShape& measured, double length) {
   find_points_plane(target);
   const Profile profile = profile_of(target);
   const double curve = set_target_arc_lengths(given, chosen, profile, target);
-  FittedArcs best = best_arcs(target, profile);
-  (void)minimise_arc_residual(best.target, best.arcs, result_limits);
+  const FittedArcs best = best_arcs(target, profile);
 
-  RestShape shape{.file = given.file,
-                  .points = count,
-                  .arcs = best.arcs.arcs,
-                  .begin = best.arcs.begin.point,
-                  .first_frame = best.arcs.begin.frame};
+  RestShape shape = best.arcs;
+  shape.file = given.file;
+  shape.points = count;
   ArcTarget all = best.target;
   all.points = given.points;
   all.d1 = given.d1;
@@ -548,7 +471,7 @@ RestShape fit_rest_shape(const MeasuredShape& measured, double length) {
       all.s[i] = (given.arc_length[i] - given.arc_length[0]) * length / curve;
     }
   }
-  set_rest_shape_errors(all, best.arcs, shape);
+  set_rest_shape_errors(all, shape);
   return shape;
 }
 

@@ -9,9 +9,9 @@
 
 namespace dlo::compare {
 
-/// A stress-free shape fitted to points in space, as arcs of constant strain, and the residuals of
-/// the fit. If the points have no frames, d1 and d2 follow the arcs by parallel transport, and the
-/// shape has no twist.
+/// A stress-free shape fitted to points in space, as arcs of constant strain and equal length, and
+/// the residuals of the fit. If the points have no frames, d1 and d2 follow the arcs by parallel
+/// transport, and the shape has no twist.
 struct RestShape {
   /// Arc of constant strain, from the end of the previous arc to its own.
   struct Arc {
@@ -42,10 +42,10 @@ struct RestShape {
 /// Largest number of arcs of a rest shape: the cost of a solve grows with their number.
 inline constexpr int most_rest_arcs = 32;
 
-/// Fits arcs to points, at most 150 of them, by nonlinear least squares in strains, ends and pose.
-/// Of 1, 2, 3, 4, 6, 8, 12, 16, 24 and 32 arcs it uses the number with the least value of Schwarz's
+/// Fits arcs to points, at most 150 of them, by nonlinear least squares in strains and pose. Of 1,
+/// 2, 3, 4, 6, 8, 12, 16, 24 and 32 arcs it uses the number with the least value of Schwarz's
 /// information criterion. Larger numbers are not tried after three that are worse, or after one
-/// whose arcs agree with all points within 1e-7 of the length. Points
+/// that agrees with the points within about 1e-7 of the length. Points
 /// within 1e-6 of the length from a plane count as planar. Arc lengths are the file's if it has
 /// any, else those of the nearest points; both are scaled to the rod's length. Of given frames only
 /// d1 is used; in the points' plane it determines the side of d2.
