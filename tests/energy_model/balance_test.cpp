@@ -40,6 +40,8 @@ TEST(Imbalance, IsTheSumOfForcesAndOfMomentsAboutTheFirstPoint) {
   EXPECT_DOUBLE_EQ(rounded.share(), 1e-3);
   EXPECT_TRUE(std::isnan(imbalance_of({{{0, 0, 0}, {NAN, 0, 0}, {0, 0, 0}}}, zero_action).share()));
   EXPECT_TRUE(std::isnan(imbalance_of({{{0, 0, 0}, {1, 0, 0}, {0, NAN, 0}}}, zero_action).share()));
+  const Imbalance force_only{.force = NAN, .moment = 0, .largest_force = 1, .largest_moment = 1};
+  EXPECT_TRUE(std::isnan(force_only.share()));
 }
 
 /// Rod at rest, solved by a model that accepts it.
@@ -184,6 +186,19 @@ TEST(Balance, IsLostWithEverythingThatActsOnTheRod) {
       EXPECT_TRUE(refused([&](Problem& problem) { problem.obstacles[i].stiffness *= 1 + 1e-5; }));
     }
   }
+}
+
+// The force of an obstacle is compared with that of its contacts only, so that it has no moment.
+// The second obstacle, which is in balance, is compared after the first.
+TEST(Balance, IsLostWithAnObstaclesForceThatIsNaN) {
+  using obstacle::Body;
+  Problem peg = heavy_cantilever(20, 0);
+  peg.obstacles = {{Body::cylinder({0.5, -0.3, 0}, {0, 0, 1}, 0.2)},
+                   {Body::half_space({0, -2, 0}, {0, 1, 0})}};
+  Equilibrium shape = test::converged(solve_energy(peg));
+  shape.obstacles = {{NAN, 0, 0}, {0, 0, 0}};
+  EXPECT_TRUE(std::isnan(imbalance_of(peg, shape).share()));
+  EXPECT_TRUE(is_refused(peg, shape));
 }
 
 // Both results are too inaccurate to be in balance. Two terms do not resolve where contact with a

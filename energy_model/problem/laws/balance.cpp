@@ -217,9 +217,8 @@ Eigen::Vector3d Action::moment_about(const Eigen::Vector3d& origin) const {
 double Imbalance::share() const {
   const double of_force = force / largest_force;
   const double of_moment = moment / largest_moment;
-  // An action whose force is NaN makes the moment NaN too, and this comparison then returns the
-  // moment.
-  return of_force > of_moment ? of_force : of_moment;
+  // NaN in either is returned: a comparison with NaN is false.
+  return of_force > of_moment || std::isnan(of_force) ? of_force : of_moment;
 }
 
 std::string Imbalance::text() const {
@@ -281,8 +280,9 @@ Imbalance imbalance_of(const Problem& problem, const Equilibrium& shape) {
   Imbalance result =
       imbalance_of(actions, {.force = {unit / problem.length, 0, 0}, .couple = {unit, 0, 0}});
   for (const Eigen::Vector3d& left : differences) {
-    // The comparison is false for NaN, so that a NaN in `left` becomes the imbalance.
-    result.force = left.norm() <= result.force ? result.force : left.norm();
+    const double size = left.norm();
+    // Once the imbalance is NaN, no later difference replaces it.
+    if (size > result.force || std::isnan(size)) result.force = size;
   }
   return result;
 }
