@@ -210,5 +210,18 @@ TEST(SidesOfBodies, RefusesPointsThatAreNoShape) {
   EXPECT_THROW((void)energy_near(problem, {0, 0.5, 1}, 0 * points), std::invalid_argument);
 }
 
+TEST(SidesOfBodies, DoNotDependOnPointsOfARefusedProblem) {
+  const Problem problem = heavy_cantilever(5, 0);
+  Problem refused = problem;
+  refused.axial_stiffness = 100;
+  EnergySolver solver;
+  EXPECT_THROW((void)solver.near(refused, {0, 0.5, 1}, Eigen::Matrix3d::Identity()),
+               std::invalid_argument);
+  const Equilibrium later = solver.solve(problem);
+  const Equilibrium first = solve_energy(problem);
+  EXPECT_EQ(later.message, first.message);
+  EXPECT_EQ(later.energy.total(), first.energy.total());
+}
+
 }  // namespace
 }  // namespace dlo::energy_model
