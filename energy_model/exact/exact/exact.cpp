@@ -33,7 +33,7 @@ constexpr std::size_t most_results = 64;  // largest number of combinations of t
 struct Found {
   std::vector<Equilibrium> equilibria;
   bool out_of_time = false;
-  std::string not_searched;  // description of an omitted part; empty: none
+  std::vector<std::string> not_searched;  // descriptions of the omitted parts
 };
 
 /// Finds equilibria of a span: near the start, by the scan of the tip if it is the whole rod, or by
@@ -63,7 +63,7 @@ Found solve_spans(const Problem& problem, const ExactOptions& options, const Dea
   for (const RodSpan& span : rod.spans) {
     SpanSearchResult search = search_one(problem, span, options, deadline);
     result.out_of_time = result.out_of_time || !search.complete;
-    result.not_searched = search.not_searched;
+    if (!search.not_searched.empty()) result.not_searched.push_back(search.not_searched);
     found.push_back(std::move(search.found));
     std::vector<SpanCandidate> own;
     for (const SpanEquilibrium& equilibrium : found.back()) {
@@ -81,8 +81,8 @@ Found solve_spans(const Problem& problem, const ExactOptions& options, const Dea
     result.equilibria.push_back(assemble(problem, rod, options.tolerance));
   }
   if (combinations.truncated) {
-    result.not_searched =
-        "only the lowest " + std::to_string(most_results) + " combinations of spans are listed";
+    result.not_searched.push_back("only the lowest " + std::to_string(most_results) +
+                                  " combinations of spans are listed");
   }
   return result;
 }
@@ -253,7 +253,7 @@ std::vector<Equilibrium> solve(const Problem& problem, const ExactOptions& optio
     equilibrium.seconds = seconds;
     separate_line_loads(problem, equilibrium);
     judge_balance(problem, equilibrium);
-    if (!found.not_searched.empty()) equilibrium.message += "; " + found.not_searched;
+    for (const std::string& part : found.not_searched) equilibrium.message += "; " + part;
     if (!found.out_of_time) continue;
     const bool holds = static_cast<bool>(equilibrium.sample);
     const std::string reached = equilibrium.message;
