@@ -170,7 +170,7 @@ void add_polygon(const Scene& scene, const ForceModelSettings& settings, Json& r
       steps.policy.automatic || steps.policy.integration != force_model::Integration::along_force;
   result["c_F"] = chosen ? Json() : Json(steps.c_F);
   result["c_h"] = settings.stepper == Stepper::dynamic ? Json(steps.c_h) : Json();
-  result["l_s_m"] = chosen ? Json() : Json(steps.l_s);
+  result["l_s_m"] = steps.l_s > 0 ? Json(steps.l_s) : Json();
   result["point_at_m"] = polygon.arc_length;
   result["point_mass_kg"] = point_masses(scene, settings).rod;
   result["point_force_N"] = points_json(rod.loads);

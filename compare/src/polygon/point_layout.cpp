@@ -347,8 +347,9 @@ force_model::StepOptions step_options(const ForceModelSettings& settings,
   force_model::StepOptions options;
   options.policy = force_model::policy(settings.stepper);
   if (settings.stepper == Stepper::verlet) choose_time_step(discretisation, options);
-  if (options.policy.automatic ||
-      options.policy.integration != force_model::Integration::along_force) {
+  if (options.policy.integration != force_model::Integration::along_force) return options;
+  if (options.policy.automatic) {
+    options.l_s = settings.l_s.value_or(0);
     return options;
   }
   const Parameters& parameters = discretisation.parameters;

@@ -101,6 +101,8 @@ TEST(SceneDocument, TheConstantsOfTheStepperAreThoseOfItsSimulation) {
   const ordered_json chosen = model("law = \"hooke\"\n");
   EXPECT_TRUE(chosen.at("c_F").is_null());
   EXPECT_TRUE(chosen.at("c_b").is_null());
+  EXPECT_TRUE(chosen.at("l_s_m").is_null());
+  EXPECT_DOUBLE_EQ(model("stepper = \"auto\"\nl_s = 2e-3\n").at("l_s_m"), 2e-3);
   const ordered_json dynamic = model("law = \"paper\"\nstepper = \"dynamic\"\nc_F = 1e-9\n");
   EXPECT_DOUBLE_EQ(dynamic.at("c_F"), 1e-9);
   EXPECT_DOUBLE_EQ(dynamic.at("c_h"), 0.9);
