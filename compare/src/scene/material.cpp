@@ -64,6 +64,9 @@ double add_strands(const Layer& layer, LayeredSection& sum) {
   const double inner = sum.outer_diameter;
   const double d = layer.strand_diameter;
   const bool core = layer.strands == 1;
+  if (layer.strands < 0) {
+    throw InputError(fmt::format("strands = {} (allowed: 0 or more)", layer.strands));
+  }
   if (layer.strands == 2 || (core && inner > 0)) {
     throw InputError(
         fmt::format("{} strand{} do{} not bend alike about all axes (allowed: 3 or more, or 1 as "

@@ -108,6 +108,9 @@ TEST(Layers, SayWhatIsWrong) {
          "2 strands do not bend alike");
   expect("diameter = 1e-3\nmaterial = \"copper\"\nlayer_bound = \"free\"\n",
          "rod.layers: missing, it is required beside layer_bound");
+  const Layer fewer_than_none{.youngs_modulus = 1e9, .strands = -3, .strand_diameter = 1e-3};
+  EXPECT_EQ(test::error_of<InputError>([&] { (void)layered_section({fewer_than_none}); }),
+            "layer 1: strands = -3 (allowed: 0 or more)");
 }
 
 }  // namespace

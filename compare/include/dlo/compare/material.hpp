@@ -55,10 +55,9 @@ struct LayeredSection {
 };
 
 /// Computes the stiffnesses and mass of a rod from its layers.
-/// @param layers  from the inside out; strands >= 0 and, of strands, strand_diameter > 0 are not
-/// checked
+/// @param layers  from the inside out; of strands, strand_diameter > 0 is not checked
 /// @throws InputError if a tube is not outside of the previous layer, strands do not fit side by
-/// side, or there are two strands, or one that is not the first layer
+/// side, or there are two strands, fewer than none, or one that is not the first layer
 [[nodiscard]] LayeredSection layered_section(const std::vector<Layer>& layers);
 
 }  // namespace dlo::compare
