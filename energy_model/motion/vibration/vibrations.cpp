@@ -390,7 +390,9 @@ Vibrations taut_vibrations(const Problem& problem, const Inertia& inertia, doubl
   require_no_bending_loads(problem);
   if (!is_held_straight(problem)) {
     throw std::invalid_argument(std::string(where) +
-                                ": clamps do not hold the rod straight along its whole length");
+                                ": the grips do not hold the rod between them straight (allowed: "
+                                "two or more clamps on a line along their directions, as far "
+                                "apart as the rod between them is long)");
   }
   const double force_unit = bending_unit(problem) / (problem.length * problem.length);
   return resolved_vibrations(
