@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <nlohmann/json.hpp>
+#include <sstream>
 
 #include "base/text.hpp"
 #include "dlo/compare/error.hpp"
@@ -22,12 +23,19 @@ json parsed(std::string_view text, const std::string& file) {
   // equilibria one more.
   constexpr long most_values = 30 * most_shape_points;
   long values = 0;
+  const auto line_at = [&](std::size_t byte) {
+    const auto end = text.begin() + static_cast<long>(std::min(byte, text.size()));
+    return 1 + std::count(text.begin(), end, '\n');
+  };
+  // The callback of the parser has no position; a stream has one.
+  std::istringstream stream{std::string(text)};
   const auto check = [&](int depth, json::parse_event_t event, json& /*value*/) {
     const bool begins =
         event == json::parse_event_t::array_start || event == json::parse_event_t::object_start;
     if (begins && depth >= deepest_nesting) {
-      throw InputError(
-          fmt::format("{}: brackets within brackets (allowed: {} levels)", file, deepest_nesting));
+      throw InputError(fmt::format("{}:{}: brackets within brackets (allowed: {} levels)", file,
+                                   line_at(static_cast<std::size_t>(stream.tellg())),
+                                   deepest_nesting));
     }
     if ((begins || event == json::parse_event_t::value) && ++values > most_values) {
       throw InputError(fmt::format("{}: too many values (allowed: {})", file, most_values));
@@ -35,11 +43,10 @@ json parsed(std::string_view text, const std::string& file) {
     return true;
   };
   try {
-    return json::parse(text, check);
+    return json::parse(stream, check);
   } catch (const json::parse_error& error) {
-    const std::size_t at = std::min(error.byte, text.size());
-    const auto line = 1 + std::count(text.begin(), text.begin() + static_cast<long>(at), '\n');
-    throw InputError(fmt::format("{}:{}: not valid JSON at byte {}", file, line, error.byte));
+    throw InputError(
+        fmt::format("{}:{}: not valid JSON at byte {}", file, line_at(error.byte), error.byte));
   } catch (const json::exception&) {
     throw InputError(fmt::format("{}: not valid JSON: a number is out of range", file));
   }

@@ -195,7 +195,8 @@ TEST(TextLimits, OfShapesAndSweeps) {
   const auto shape = [](const std::string& text) {
     return error_of<InputError>([&] { (void)dlo::compare::parse_shape(text, "s.json", 1); });
   };
-  EXPECT_EQ(shape(repeated("[", 300'000)), "s.json: brackets within brackets (allowed: 32 levels)");
+  EXPECT_EQ(shape(repeated("[\n", 300'000)),
+            "s.json:33: brackets within brackets (allowed: 32 levels)");
   EXPECT_EQ(shape("[" + repeated("0,", 3'000'000) + "0]"),
             "s.json: too many values (allowed: 3000000)");
   EXPECT_EQ(
