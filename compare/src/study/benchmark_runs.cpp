@@ -103,6 +103,7 @@ std::optional<Timing> Stopwatch::time(const std::string& name, double predicted_
     if (!done(name, [&] { times.push_back(work()); })) return std::nullopt;
     total += times.back();
   }
+  if (std::isnan(total)) return Timing{total, total, total, static_cast<int>(times.size())};
   return timing_of(std::move(times));
 }
 

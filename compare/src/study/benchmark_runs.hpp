@@ -23,9 +23,9 @@ class Stopwatch {
   void allow(double seconds) { deadline_ = this->seconds() + seconds; }
   [[nodiscard]] double left() const { return deadline_ - seconds(); }
 
-  /// Runs `work` repeatedly, which returns its time [s], until the times are enough or one is NaN.
-  /// Returns std::nullopt if one run is predicted to take more than a quarter of the remaining
-  /// budget, if no time is left, or if `work` throws.
+  /// Runs `work` repeatedly, which returns its time [s], until the times are enough or one is NaN,
+  /// which makes all times of the result NaN. Returns std::nullopt if one run is predicted to take
+  /// more than a quarter of the remaining budget, if no time is left, or if `work` throws.
   [[nodiscard]] std::optional<Timing> time(const std::string& name, double predicted_s,
                                            const std::function<double()>& work);
 
