@@ -61,16 +61,18 @@ JointForces hooke_forces(double EI_over_L, const Eigen::Vector3d& u, double a,
           moment / b * orthogonal_part(e, v).normalized()};
 }
 
-/// Returns the angle from a to b, seen from +z [rad].
+/// Returns the angle from a to b, seen from +z [rad]; 0 if one of them is zero. Adding zero avoids
+/// atan2(0, -0), which is pi.
 double signed_turn(const Eigen::Vector3d& a, const Eigen::Vector3d& b) {
-  return std::atan2(a.x() * b.y() - a.y() * b.x(), a.x() * b.x() + a.y() * b.y());
+  return std::atan2(a.x() * b.y() - a.y() * b.x(), a.x() * b.x() + a.y() * b.y() + 0.0);
 }
 
 /// Returns a vector of the plane z = 0, rotated to the left by a right angle.
 Eigen::Vector3d rotated_left(const Eigen::Vector3d& vector) { return {-vector.y(), vector.x(), 0}; }
 
+/// Returns the angle between a and b, in [0, pi]; 0 if one of them is zero, as signed_turn().
 double turning_angle(const Eigen::Vector3d& a, const Eigen::Vector3d& b) {
-  return std::atan2(a.cross(b).norm(), a.dot(b));
+  return std::atan2(a.cross(b).norm(), a.dot(b) + 0.0);
 }
 
 }  // namespace

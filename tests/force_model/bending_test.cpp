@@ -106,6 +106,9 @@ TEST_P(BendingOfBothLaws, ZeroLengthSegmentExertsNothing) {
   Eigen::Matrix3Xd points = one_joint(1, 0.5);
   points.col(2) = points.col(1);
   EXPECT_EQ(forces_of(points, Eigen::Vector2d::Ones(), bending()).cwiseAbs().maxCoeff(), 0);
+  points.setZero();
+  points.col(2).setConstant(-1);
+  EXPECT_EQ(bending_energy(points, Eigen::Vector2d::Ones(), bending()), 0);
 }
 
 INSTANTIATE_TEST_SUITE_P(Laws, BendingOfBothLaws,
@@ -201,6 +204,18 @@ TEST(PaperBending, PotentialIsTheClosedForm) {
   const double c = std::cos(alpha / 2);
   EXPECT_NEAR(joint_potential({BendingLaw::paper, 2.5}, 0.3, alpha),
               2.5 * 0.3 * (8.0 / 3 - 4 * c + 4.0 / 3 * c * c * c), 1e-15);
+}
+
+// P(alpha) = -4 k log cos(alpha/2) and M(alpha) = 2 k tan(alpha/2), with k = 2.5 and the angle 0.
+TEST(Bending, EnergyOfANaturalTurnNextToAZeroLengthSegmentIsThatOfAStraightJoint) {
+  Bending bent{BendingLaw::hooke, 2.5};
+  bent.natural_turns = Eigen::VectorXd::Constant(1, 0.5);
+  for (const double direction : {-1.0, 1.0}) {
+    Eigen::Matrix3Xd points = Eigen::Matrix3Xd::Zero(3, 3);
+    points.col(2) << direction, direction, 0;
+    EXPECT_NEAR(bending_energy(points, Eigen::Vector2d::Ones(), bent),
+                10 * std::log(std::cos(0.25)) + 2.5 * std::tan(0.25), 1e-14);
+  }
 }
 
 TEST(Bending, RefusesBadNumbers) {
