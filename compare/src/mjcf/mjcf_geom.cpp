@@ -34,9 +34,11 @@ std::size_t sizes_of(Type type) {
     case Type::box:
     case Type::ellipsoid:
       return 3;
-    default:
-      return 0;
+    case Type::plane:
+    case Type::other:
+      break;
   }
+  return 0;
 }
 
 /// Reads half-sizes; the last `given` of them are optional, because fromto determines them.
@@ -121,9 +123,11 @@ double mjcf_volume(const MjcfGeom& geom) {
       return 8 * geom.size.prod();
     case Type::ellipsoid:
       return 4 * pi / 3 * geom.size.prod();
-    default:
-      return 0;
+    case Type::plane:
+    case Type::other:
+      break;
   }
+  return 0;
 }
 
 MjcfGeom read_mjcf_geom(const MjcfNode& node, const MjcfPose& at) {

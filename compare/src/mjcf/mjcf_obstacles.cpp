@@ -56,9 +56,12 @@ std::string shape_text(const MjcfGeom& geom, const MjcfPose& pose) {
       return fmt::format("shape = \"box\"\npoint = {}\naxis = {}\nnormal = {}\nsize = {}\n", point,
                          toml_vector(pose.linear().col(0)), toml_vector(pose.linear().col(1)),
                          toml_vector(2 * geom.size));
-    default:
-      return "";
+    case Type::ellipsoid:
+    case Type::cylinder:
+    case Type::other:
+      break;
   }
+  return "";
 }
 
 }  // namespace
