@@ -23,8 +23,8 @@ namespace {
 
 using std::numbers::pi;
 
-/// Size of the first, the longest and the shortest continuation step: rotation of the end [rad].
-constexpr double first_rotation = 1.6;
+/// Size of the first step, which is the longest, and of the shortest continuation step: rotation of
+/// the end [rad].
 constexpr double longest_rotation_step = 1.6;
 constexpr double least_rotation = 1e-4;
 /// Largest step after which a shape that has become unstable is accepted, to start a descent from
@@ -93,7 +93,7 @@ class TwistPath {
   [[nodiscard]] SpanSolution run(double whole) {
     newton(here_, NewtonMethod::corrector);
     if (here_.is_equilibrium()) is_far_from_singular_ = is_stable(here_) && is_far_from_singular_;
-    double turn = std::copysign(first_rotation, whole);
+    double turn = std::copysign(longest_rotation_step, whole);
     while (here_.is_equilibrium() && angle_ != whole) {
       if (options_.deadline.passed()) {
         here_.finish(SolveStatus::time_limit);
