@@ -42,7 +42,7 @@ double bound(double value, double rounding) {
 
 /// Returns the bound of a number, or of a vector, including the rounding to ten digits.
 double bound_of_digits(double value, double size, double large) {
-  constexpr double rounding = 1e-10;  // typical; ten digits are exact to 5e-11 to 5e-10 of a number
+  constexpr double rounding = 5e-10;  // half a unit of the tenth digit of 1, the largest share
   return bound(value, rounding * std::max(size, large));
 }
 

@@ -117,6 +117,17 @@ TEST(Pack, BoundsHoldTheRoundingOfWhatIsWritten) {
   }
 }
 
+// The tenth digit of this force is a unit of 1e-3, and 4e-4 are lost.
+TEST(Pack, BoundsHoldTheRoundingOfANumberJustAboveAPowerOfTen) {
+  Answer answer =
+      dlo::compare::certified_answer(chosen_scenes(builtin_battery(), {"bending_large"}).front());
+  answer.first.grippers.front().force = {1000000.0004, 0, 0};
+  answer.bounds.forces_N.front() = 0;
+  const json written = dlo::compare::answer_json(answer);
+  EXPECT_EQ(written["grippers"][0]["force_N"][0], 1e6);
+  EXPECT_EQ(written["grippers"][0]["force_bound_N"], 5e-4);
+}
+
 TEST(Pack, CommittedOneHasEveryScene) {
   const json index = json::parse(text_of(DLO_DATA "/suite/answers/suite.json"));
   EXPECT_EQ(index["version"], builtin_battery().version);
