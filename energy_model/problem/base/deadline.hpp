@@ -9,7 +9,7 @@
 namespace dlo::energy_model {
 
 /// Time limit of a solve, which also ends as soon as its thread is interrupted (Interruption).
-/// Solvers check it between evaluations, so they exceed it by one evaluation at most.
+/// Solvers check it between evaluations.
 class Deadline {
  public:
   /// @param seconds  time limit from now on [s], > 0; infinity never passes

@@ -20,8 +20,8 @@ template <typename Shape>
   return lowest;
 }
 
-/// Returns the lowest unstable shape whose energy is below that of all stable ones, which shows
-/// that a minimum has been missed; null if there is none.
+/// Returns the lowest unstable shape, if its energy is not above that of the lowest stable one: a
+/// minimum has been missed then. Else returns null.
 /// @param left  energies of the shapes to exclude: the saddles that have already been left
 template <typename Shape>
 [[nodiscard]] const Shape* saddle_below_minima(const std::vector<Shape>& found,

@@ -40,7 +40,8 @@ void add_line_load(const LineLoad& load, std::vector<RodPart>& parts) {
   parts = std::move(cut);
 }
 
-/// Calls `add` with the directions in which loads act, and with two directions across each couple.
+/// Calls `add` with the directions in which loads and drag act, and with two directions across each
+/// couple.
 void add_loads(const Problem& problem,
                const std::function<void(const Eigen::Vector3d&, double)>& add) {
   for (const LineLoad& load : problem.line_loads) {
@@ -56,7 +57,8 @@ void add_loads(const Problem& problem,
   }
 }
 
-/// Whether a load moves the rod out of a plane by more than about 1e-6 of its length.
+/// Whether a load moves the rod out of a plane by more than about 1e-6 of its length, or drag by
+/// more than rounding.
 bool loads_leave_plane(const Problem& problem, const Eigen::Vector3d& normal) {
   constexpr double negligible_load_share = 1e-6;
   const double most =

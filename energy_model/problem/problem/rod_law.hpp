@@ -33,8 +33,8 @@ struct RodPart : Section {
 /// Whether a line load is constant along the whole rod.
 [[nodiscard]] bool is_uniform_over_rod(const LineLoad& load, const Problem& problem);
 
-/// Returns the weight per length outside sections, including the line loads that act everywhere
-/// [N/m].
+/// Returns the weight per length outside sections, including the line loads that are constant along
+/// the whole rod [N/m].
 [[nodiscard]] Eigen::Vector3d total_uniform_weight(const Problem& problem);
 
 /// Returns two orthogonal unit directions of the plane in which couples about this axis bend a rod.

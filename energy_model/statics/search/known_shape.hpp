@@ -44,7 +44,7 @@ struct PlacedSolution {
 /// Returns the spans of a problem at a known equilibrium, all in space, so that they bend out of
 /// their plane too, and without rigid obstacles. Each is solved again from its shape.
 /// @param terms  number of coefficients of each element
-/// @throws std::invalid_argument if a span has more unknowns than affordable
+/// @throws std::invalid_argument as split(), or if a span has more unknowns than affordable
 [[nodiscard]] std::vector<PlacedSolution> spans_in_space(const Problem& problem,
                                                          const Equilibrium& known, int terms,
                                                          const Deadline& deadline,

@@ -44,11 +44,11 @@ struct Imbalance {
 ///               solver rounds on that scale, so smaller actions do not make the share larger
 [[nodiscard]] Imbalance imbalance_of(const std::vector<Action>& actions, const Action& least);
 
-/// Sums the actions on the rod in a shape that a solver has returned: reactions of the grips,
-/// weight, loads, line loads, drag and obstacles, each at its position in the returned shape. The
+/// Sums the actions on the rod in a shape that a solver has returned: reactions at the positions of
+/// the grips; weight, loads, line loads, drag and obstacles at their positions in the shape. The
 /// action of a rigid obstacle is taken from Equilibrium::contacts, and that of a yielding obstacle
-/// is computed from its depth in the shape. A difference of an obstacle's force from
-/// Equilibrium::obstacles counts as an unbalanced force.
+/// is computed from its depth in the shape. If the force of an obstacle differs from
+/// Equilibrium::obstacles by more than Imbalance::force, that difference replaces it.
 /// @param shape  equilibrium with `sample` and a reaction for each grip
 [[nodiscard]] Imbalance imbalance_of(const Problem& problem, const Equilibrium& shape);
 

@@ -45,7 +45,7 @@ struct ChainOptions {
   /// forces times the length, plus the largest moment of a joint's stress-free angle; > 0. Rounding
   /// may end the minimisation at a larger gradient.
   double tolerance = 1e-12;
-  /// Maximum number of energy evaluations, >= 1; beyond it `evaluation_limit`.
+  /// Maximum number of energy evaluations, >= 1. A call that reaches it returns `evaluation_limit`.
   int max_evaluations = 20000;
   /// Time limit of the whole call [s], > 0. A call that reaches it returns `time_limit`.
   double time_limit = std::numeric_limits<double>::infinity();
@@ -59,8 +59,8 @@ struct [[nodiscard]] ChainResult {
   std::string message = "never ran";  ///< the status in words
   int evaluations = 0;                ///< evaluations of energy and gradient
   double seconds = 0;                 ///< wall time [s]
-  /// Norm of the gradient with respect to the segment angles [N m]; -1 if a limit was reached
-  /// before the first Newton step.
+  /// Norm of the gradient with respect to the segment angles [N m]; not meaningful if a limit was
+  /// reached.
   double residual = -1;
   /// Torque about `start` that the clamp of the first segment exerts, computed from the moment of
   /// the first joint and the force beyond it [N m].

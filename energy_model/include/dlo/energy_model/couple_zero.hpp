@@ -18,6 +18,7 @@ struct CoupleZero {
 /// clamp after it. Without a clamp the arc length is 0, and the direction is that from the first
 /// grip to the next grip at another position. If all grips have the same position, it is any
 /// direction across the couple.
+/// @throws std::invalid_argument if the rod does not reach from grip to grip
 [[nodiscard]] CoupleZero couple_zero(const Problem& problem, const Load& load);
 
 }  // namespace dlo::energy_model

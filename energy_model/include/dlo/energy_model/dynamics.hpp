@@ -24,10 +24,10 @@ struct MovingRod {
   /// motion is taken from its motion.
   Problem problem;
   Inertia inertia;  ///< masses, which `problem` does not contain
-  /// Motion of each grip; an empty vector or a null entry: the grip does not move.
+  /// Motion of each grip; a missing or null entry: the grip does not move.
   std::vector<GripMotion> motions;
   /// Motion that carries the body of each obstacle, whose pose in `problem` is that at the first
-  /// time. An empty vector or a null entry: the obstacle does not move.
+  /// time. A missing or null entry: the obstacle does not move.
   std::vector<GripMotion> obstacle_motions;
   double material_damping = 0;  ///< relaxation time tau of Kelvin-Voigt damping [s], >= 0
   double air_drag = 0;  ///< coefficient c of drag, force per length and velocity [N s/m^2], >= 0
@@ -105,8 +105,8 @@ struct [[nodiscard]] Dynamics {
   /// Largest |total - total at the first time + dissipated + lost - work| of all frames, divided by
   /// `largest_energy`.
   double energy_error = std::numeric_limits<double>::infinity();
-  /// Largest of the following in all frames: kinetic, bending, twisting, obstacle, dissipated or
-  /// lost energy, work, and change of gravity and load energy [J].
+  /// Largest of the following at the first time and in all frames: kinetic, bending, twisting,
+  /// obstacle, dissipated or lost energy, work, and change of gravity and load energy [J].
   double largest_energy = 0;
 };
 

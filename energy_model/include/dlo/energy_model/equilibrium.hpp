@@ -97,8 +97,8 @@ struct [[nodiscard]] Equilibrium {
   /// shape. Always 0 for `exact`.
   int neutral_directions = 0;
   /// `energy`: energies of the stable equilibria that the search found, lowest first, at most 64;
-  /// each mirror image has an entry of its own [J]. Empty without a search, for example if a shape
-  /// is followed.
+  /// each mirror image has an entry of its own [J]. Empty if the call started from a known shape or
+  /// needed no search.
   std::vector<double> stable_energies;
   /// `energy`: number of initial guesses of the search that pass obstacles on another side.
   int other_side_starts = 0;

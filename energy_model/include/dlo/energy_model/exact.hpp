@@ -52,9 +52,10 @@ Equilibrium solve_exact(const Problem& problem, const ExactOptions& options = {}
 /// Returns every equilibrium that the scan or the search finds: `converged` ones first, by energy,
 /// then `saddle`, no others. With several spans these are the 64 lowest combinations, and the
 /// message states if there are more. Under a load without a potential it is solve_exact()'s alone,
-/// `not_verified`. Those found until the time limit have the status `time_limit`, and the message
-/// describes them. Empty if none was found. For one clamp in the plane the list is complete up to
-/// the resolution of the scan (energy_model/doc/exact.md); elsewhere equilibria may be missing.
+/// `not_verified`. From ExactOptions::start it is the one near the start. Those found until the
+/// time limit have the status `time_limit`, and the message describes them. Empty if none was
+/// found. For one clamp in the plane the list is complete up to the resolution of the scan
+/// (energy_model/doc/exact.md); elsewhere equilibria may be missing.
 /// @throws std::invalid_argument as solve_exact()
 [[nodiscard]] std::vector<Equilibrium> all_exact(const Problem& problem,
                                                  const ExactOptions& options = {});

@@ -9,8 +9,7 @@ namespace dlo::energy_model {
 /// time limit.
 class Interruption {
  public:
-  /// @param asked  returns whether to stop. It must not throw and must be fast: it is called some
-  ///               hundred thousand times a second
+  /// @param asked  returns whether to stop. It must not throw and must be fast
   explicit Interruption(bool (*asked)());
   Interruption(const Interruption&) = delete;
   Interruption& operator=(const Interruption&) = delete;

@@ -15,8 +15,8 @@ namespace dlo::energy_model {
 /// Condition that keeps a clamped cross-section from rotating about its direction.
 struct FrameHold {
   /// First director of the rod's frame at the clamp, of which only the part across the direction is
-  /// used. None: d1 of the first clamp that holds the frame, transported by the shortest rotation
-  /// of that clamp's direction into this one's (held_d1() in turns.hpp).
+  /// used. None: d1 of the first clamp that holds the rod's frame, transported by the shortest
+  /// rotation of that clamp's direction into this one's (held_d1() in turns.hpp).
   std::optional<Eigen::Vector3d> d1;
   double roll = 0;  ///< rotation from d1 about the direction, whole turns counted [rad]
 };
@@ -147,9 +147,8 @@ struct Problem {
 /// @throws std::invalid_argument naming the function, the load and solve_exact()
 void require_dead_loads(const Problem& problem, const char* function);
 
-/// Checks whether each member is in its range. Solvers check whether the rod reaches from grip to
-/// grip.
-/// @throws std::invalid_argument naming the first member out of range, its value and its range
+/// Checks the ranges of the members, but not whether the rod reaches from grip to grip.
+/// @throws std::invalid_argument naming a member out of range, its value and its range
 void check(const Problem& problem);
 
 /// Energies [J]. Gravity and loads are zero if their points are at the first grip. Couples are zero

@@ -2,8 +2,8 @@
 
 namespace dlo::energy_model {
 
-/// Outcome of a solver. All but `converged` and `roundoff_limited` are failures. The default of
-/// every result is `not_run`.
+/// Outcome of a solver. A usable shape is `converged` or `roundoff_limited` (succeeded()). The
+/// default of every result is `not_run`.
 enum class SolveStatus {
   not_run,  ///< the solver was not called
   /// An equilibrium; the second variation of the returned shape is positive, except for zero modes

@@ -9,10 +9,11 @@
 namespace dlo::energy_model {
 
 /// Returns the first director from which the roll of a clamp's frame is measured: unit and across
-/// the direction. It is FrameHold::d1, or else d1 of the first clamp that holds the frame,
-/// transported by the shortest rotation of that clamp's direction into this one's, which in a plane
-/// maps the normal to itself. If the first clamp has no d1, it is arbitrary for a round straight
-/// rod; Problem defines it for a rod with material directors.
+/// the direction. It is FrameHold::d1, or else d1 of the first clamp that holds the frame (of the
+/// first clamp of a rod with material directors), transported by the shortest rotation of that
+/// clamp's direction into this one's, which in a plane maps the normal to itself. If the first
+/// clamp has no d1, it is arbitrary for a round straight rod; Problem defines it for a rod with
+/// material directors.
 /// @throws std::invalid_argument if the grip is no clamp with a frame, or if the two directions are
 /// opposite and along the line from clamp to clamp, so that no plane determines the rotation; also
 /// as first_frame(), if d1 of a rod with material directors is needed
@@ -44,9 +45,9 @@ struct Writhe {
 /// Rotation of the frames that clamps at both ends of a rod hold.
 struct HeldTurns {
   double roll = 0;  ///< roll of the end minus roll of the start, whole turns counted [rad]
-  /// Result of held_turns() [-]. Empty for an intrinsically curved rod whose later clamp has no d1:
-  /// its roll is measured from the rod's shape without this frame, so that a coiled rod stays
-  /// coiled. Also empty if held_turns() is.
+  /// Result of held_turns() [-]. Empty for a rod with Problem::natural_strains whose later clamp
+  /// has no d1: its roll is measured from the rod's shape without this frame, so that a coiled rod
+  /// stays coiled. Also empty if held_turns() is.
   std::optional<double> turns;
 };
 
@@ -57,7 +58,7 @@ struct HeldTurns {
 
 /// Returns the angle by which the frame at the end of a shape that ignores the end frame has to be
 /// rotated [rad], so that the shape has the prescribed turns. If only its writhe modulo two is
-/// known, this is the smallest angle that reaches their homotopy class.
+/// known, this is the smaller of the angles for the two writhes in [-2, 2].
 /// @param frame_angle  angle from the shape's d1 to the prescribed d1 without roll, up to whole
 ///                     turns [rad]
 /// @param twist   twist of the shape [rad]
