@@ -158,7 +158,7 @@ void RodBlock::update_dimension(std::span<const Rod> rods) {
   };
   const bool planar = std::all_of(rods.begin(), rods.end(), is_planar) && flat(positions) &&
                       flat(proposals) && flat(proposals + axes);
-  // There is no kernel in space with natural angles; Lockstep keeps such rods in the plane.
+  // There is no kernel in space with natural angles; BatchBlock keeps such rods in the plane.
   kernel_ = &step_kernel(set_,
                          {.law = law_,
                           .dimension = planar ? 2 : 3,

@@ -41,9 +41,10 @@ class Batch {
   explicit Batch(const std::vector<BatchRod>& rods);
   Batch(const Batch& other) = delete;
   Batch& operator=(const Batch& other) = delete;
-  /// Moves the rods; `other` is left empty.
+  /// Moves the rods; `other` may only be assigned to or destroyed.
   Batch(Batch&& other) noexcept;
-  Batch& operator=(Batch&& other) noexcept;  ///< Moves the rods; `other` is left empty.
+  /// Moves the rods; `other` may only be assigned to or destroyed.
+  Batch& operator=(Batch&& other) noexcept;
   ~Batch();
 
   /// Returns the number of rods.
@@ -57,10 +58,10 @@ class Batch {
   /// Makes `count` steps of all rods, block by block.
   void step(long count);
 
-  /// Steps the rods of one block until each is at rest, see Simulation::relax; rods at rest wait
-  /// for the others. Returns results in the order of the rods. Allocates.
+  /// Runs Simulation::relax for the rods of one block; rods at rest wait for the others. Returns
+  /// results in the order of the rods. Allocates.
   std::vector<RelaxResult> relax_block(std::size_t block, const RelaxOptions& options);
-  /// Steps all rods until each is at rest, block by block, and returns results in the order of the
+  /// Runs relax_block() for all blocks, one after another, and returns results in the order of the
   /// rods.
   std::vector<RelaxResult> relax(const RelaxOptions& options = {});
 

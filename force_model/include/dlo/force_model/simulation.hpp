@@ -44,12 +44,13 @@ class Simulation {
   /// c_m. It is negative after an overshoot, which is less than a step.
   [[nodiscard]] double remaining_steps() const;
 
-  /// Steps until the rod is at rest. A shape is at rest if its tangent stiffness is positive
-  /// definite, and both the Newton step to the equilibrium and the remaining momentum are below the
-  /// tolerance, or below EquilibriumCheck::rounding_error if that is larger. A small force or
-  /// movement alone proves nothing, as the paper's creeping shapes show. A rod in an unstable
-  /// equilibrium is displaced by 1e-6 of its length in a direction of negative curvature.
-  /// Allocates.
+  /// Steps until the rod is at rest or a limit of the options is reached. A shape is at rest if its
+  /// tangent stiffness is positive definite, and both the Newton step to the equilibrium and the
+  /// remaining momentum are below the tolerance, or below EquilibriumCheck::rounding_error if that
+  /// is larger. A small force or movement alone proves nothing, as the paper's creeping shapes
+  /// show. A rod in an unstable equilibrium is displaced by 1e-6 of its length in a direction of
+  /// negative curvature. Allocates.
+  /// @throws std::invalid_argument if an option is out of range
   RelaxResult relax(const RelaxOptions& options = {});
 
   /// Moves a gripper; a frame that it holds follows by the smallest rotation of its segment.

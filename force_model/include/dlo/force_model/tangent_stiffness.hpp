@@ -7,8 +7,8 @@
 
 namespace dlo::force_model {
 
-/// Symmetric matrix: minus the derivative of the total forces on the free points by their
-/// positions.
+/// Symmetric part of minus the derivative of the total forces on the free points by their
+/// positions. Only the paper's law between unequal segments has an antisymmetric part.
 struct StiffnessMatrix {
   std::vector<Eigen::Index> points;  ///< indices of the points that no rigid grip holds
   Eigen::MatrixXd entries;  ///< three rows and columns x, y, z for each point of `points` [N/m]
