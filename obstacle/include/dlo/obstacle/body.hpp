@@ -79,11 +79,12 @@ class Body {
   [[nodiscard]] bool is_symmetric(const Eigen::Vector3d& point, const Eigen::Vector3d& normal,
                                   double unit) const;
 
-  /// Returns the point where the axes of the core meet, for a half-space a point of its plane [m].
+  /// Returns the point where the axes of the core meet [m]; for a half-space a point of the plane
+  /// from which the surface is radius() away.
   [[nodiscard]] const Eigen::Vector3d& centre() const { return centre_; }
   /// Axes of the core, columns.
   [[nodiscard]] const Eigen::Matrix3d& axes() const { return axes_; }
-  /// Lower ends of the core along its axes.
+  /// Lower ends of the core along its axes, from the centre [m].
   [[nodiscard]] const Eigen::Vector3d& lower() const { return lower_; }
   [[nodiscard]] const Eigen::Vector3d& upper() const { return upper_; }  ///< >= lower()
   [[nodiscard]] double radius() const { return radius_; }  ///< radius about the core [m]

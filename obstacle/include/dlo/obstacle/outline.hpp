@@ -11,7 +11,7 @@ namespace dlo::obstacle {
 /// outline is also its cross-section there, since the body is convex: the midpoint between a point
 /// and its mirror image is inside.
 /// @param right, up  axes of the plot, orthonormal
-/// @param far  distance from the body's middle at which infinite dimensions end [m], > 0
+/// @param far  distance from the body's middle at which longer dimensions end [m], > 0
 /// @return 2 x M [m]; empty for a half-space whose edge is not visible, which fills the whole plot
 [[nodiscard]] Eigen::Matrix2Xd outline(const Body& body, const Eigen::Vector3d& right,
                                        const Eigen::Vector3d& up, double far);
