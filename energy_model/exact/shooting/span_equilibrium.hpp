@@ -51,7 +51,8 @@ inline constexpr double largest_growth = 3;
                                          const ClampFrames& frames, const ShootingOptions& options);
 
 /// Solves by Newton's method from an initial guess, and again on a finer mesh if the force that
-/// bends the rod turns out to be large for the mesh. Computes energies and stability of the result.
+/// bends the rod turns out to be large for the mesh. Computes energies and stability of a converged
+/// result.
 [[nodiscard]] SpanEquilibrium shoot_span(const RodSpan& span, RodMesh mesh,
                                          std::vector<RodState> start, const ClampFrames& frames,
                                          const ShootingOptions& options);

@@ -92,8 +92,8 @@ struct [[nodiscard]] Dynamics {
   std::string message = "never ran";  ///< the status in words
   std::vector<MovingFrame> frames;    ///< states at the requested times that were reached
   int terms = 0;                      ///< coefficients of each element and strain component
-  /// Number of solved steps of all spans, rejected ones included. With an adapted step size a step
-  /// and its two halves count as three.
+  /// Number of attempted steps of all spans, in all runs. With an adapted step size a step and its
+  /// two halves count as three.
   long steps = 0;
   /// Size of the smallest step [s].
   double smallest_step = std::numeric_limits<double>::infinity();

@@ -28,7 +28,8 @@ struct EnergyOptions {
   /// Maximum number of energy evaluations of one NLopt descent, >= 1. A descent that reaches it
   /// returns `evaluation_limit`. Descents between grips and Newton's method have separate limits.
   int max_evaluations = 20000;
-  /// Time limit of the whole call [s], > 0. A call that reaches it returns `time_limit`.
+  /// Time limit of the whole call [s], > 0. A call that reaches it returns the best shape found so
+  /// far, or `time_limit` if there is none.
   double time_limit = std::numeric_limits<double>::infinity();
   /// Known equilibrium of a similar problem with the same length and clamps, from which the solver
   /// starts instead of a search. The solver follows its branch, so that a snap-through shows where

@@ -52,12 +52,12 @@ struct ContactPart {
 
 /// Outcome of a solver for a continuous rod: solve_energy() or solve_exact(). The numbers are
 /// meaningful only for an equilibrium (`converged`, `roundoff_limited`, `saddle`, `near_singular`).
-/// With another status they are those of the last iterate, or defaults, and claim nothing.
+/// With another status they are those of the last iterate, or defaults, and claim no more than the
+/// message.
 struct [[nodiscard]] Equilibrium {
   SolveStatus status = SolveStatus::not_run;  ///< outcome, and the claim on the shape
   std::string message = "never ran";  ///< the status in words, with the number of zero modes
-  /// Cost of the call; in a list of equilibria only the first one is certain to count the whole
-  /// cost.
+  /// Cost of the call; in a list of equilibria usually only the first one counts the whole cost.
   /// `energy`: evaluations of energy and gradient by descents and Newton's method from all initial
   /// guesses, and of the polygons that detect contact. Hessians and the evaluations that only
   /// verify a shape do not count.

@@ -22,7 +22,8 @@ struct FrameHold {
 };
 
 /// A grip at one arc length: a clamp (position and direction) or a pin (position). A clamp leaves
-/// the twist free unless it holds the frame too.
+/// the twist free unless it holds the frame too; the first clamp of a rod with material directors
+/// always holds it.
 struct Grip {
   double at = 0;                                       ///< arc length [m], 0 .. length
   Eigen::Vector3d position = Eigen::Vector3d::Zero();  ///< [m]

@@ -31,9 +31,8 @@ inline constexpr double catenary_limit_stiffness = 1e-10;
 /// the position of the other end of the rod, divided by l. The shape is stable because it is under
 /// tension everywhere: int EI |eta'|^2 + T |eta|^2 ds > 0 for every change eta of the tangent.
 /// Other equilibria are not searched for.
-/// @return std::nullopt for another kind of problem, for grips above each other, for a grip that
-/// bends the rod by 170 deg or more, if layers overlap each other or the contact, and if `residual`
-/// is larger than `error_estimate`
+/// @return std::nullopt if the problem is of another kind or the limit does not describe it, as for
+/// grips above each other, a clamp that bends the rod by 170 deg or more, and layers that overlap
 /// @throws std::invalid_argument if the problem is out of range
 [[nodiscard]] std::optional<Equilibrium> catenary_limit(const Problem& problem);
 
