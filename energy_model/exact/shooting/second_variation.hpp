@@ -17,7 +17,8 @@ namespace dlo::energy_model {
 struct SecondVariation {
   /// Number of eigenvalues below -neutral_eigenvalue, each an unstable mode; -1: unknown.
   int negative = -1;
-  int neutral = -1;  ///< number of eigenvalues that count as zero (zero modes); -1: unknown
+  /// Number of eigenvalues that count as zero (zero modes); not meaningful if `negative` is -1.
+  int neutral = -1;
   double smallest = std::numeric_limits<double>::quiet_NaN();  ///< smallest eigenvalue
   Eigen::VectorXd s;  ///< arc lengths in the span at which `spin` is given
   /// Spins of the frames in the mode of the smallest eigenvalue, scaled to a largest length of 1.
@@ -63,7 +64,7 @@ using SpanStates = std::function<std::vector<RodState>(const std::vector<double>
 /// @param force  force over b that bends the span over lengths of 1 / force^(1/2): determines the
 ///               elements
 /// @param mesh   mesh with the contacts of the rod; empty: none
-/// @return counts of -1 if the states are not finite
+/// @return `negative` = -1 if it cannot be determined, as for states that are not finite
 [[nodiscard]] SecondVariation second_variation(const RodSpan& span, const RodMesh& mesh,
                                                const ClampFrames& frames, double force,
                                                const SpanStates& states);

@@ -13,7 +13,7 @@ namespace {
 
 constexpr double largest_tangent_rotation =
     0.5;  // largest rotation of a tangent in one Newton step [rad]
-// Largest step of a contact, divided by the distance of its neighbouring fixed nodes or contacts.
+// Largest step of a contact, divided by the distance to the next fixed node or contact.
 constexpr double longest_share = 0.3;
 
 double unit_of_force(const RodSpan& span, const std::vector<RodState>& start) {

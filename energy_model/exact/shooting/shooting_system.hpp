@@ -77,7 +77,7 @@ class ShootingSystem {
                               Triplets* derivatives) const;
 
   /// Returns the share of a step, at most 1, that rotates tangents by at most 0.5 rad and moves a
-  /// contact by at most 0.3 of the distance between its neighbouring grips, loads or contacts.
+  /// contact by at most 0.3 of the distance to the next fixed node or contact.
   [[nodiscard]] double allowed_step_share(const ShootingPoint& point,
                                           const Eigen::VectorXd& step) const;
 

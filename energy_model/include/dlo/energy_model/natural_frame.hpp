@@ -13,8 +13,8 @@ namespace dlo::energy_model {
 /// side of +z (+y, +x). Without natural strains loads determine the plane too, and a straight line
 /// lies in the plane that contains x, or y. With natural strains loads do not determine the plane.
 /// Returns std::nullopt if there is no such plane, or if an obstacle is not symmetric to it. With
-/// natural strains it also does so for a straight line whose plane contains z, because another
-/// plane would do as well, and if a load or drag moves the rod out of the plane noticeably.
+/// natural strains it also does so if grips, weight and obstacles determine only a line, in a plane
+/// that contains z, or if a load or drag moves the rod out of the plane noticeably.
 [[nodiscard]] std::optional<Eigen::Vector3d> natural_normal(const Problem& problem);
 
 /// Returns the index in Problem::grips of the first clamp along the rod; std::nullopt if there are
