@@ -25,7 +25,8 @@ struct BatchRod {
 /// stiffnesses, loads, walls, grips, initial points and step constants may differ from rod to rod.
 /// Each rod moves as in its own Simulation, up to rounding. Rods between grips that hold their
 /// frame are refused, because only a Simulation counts their twist, and so are steps with
-/// velocities and implicit steps.
+/// velocities and implicit steps. Functions throw std::out_of_range for a block that does not
+/// exist, and std::invalid_argument for such a rod.
 ///
 /// Blocks share no data. Different threads may work on different blocks at the same time:
 ///     tbb::parallel_for(std::size_t{0}, batch.blocks(), [&](auto b) { batch.step_block(b, 1000);

@@ -35,13 +35,16 @@ struct Bending {
 /// vector neither is empty nor has one entry per joint, or if the paper's law has natural angles
 void check(const Bending& bending, Eigen::Index segments);
 
-/// Returns the moment of one joint [N m] at the joint angle `alpha` [rad], 0 <= alpha <= pi.
+/// Returns the moment of one joint [N m] at the joint angle `alpha` [rad], 0 <= alpha <= pi,
+/// without its natural angle.
+/// @throws std::invalid_argument if an argument is out of range
 [[nodiscard]] double joint_moment(const Bending& bending, double segment_length, double alpha);
 
-/// Returns the potential of one joint [J]; its derivative by alpha is joint_moment.
+/// Returns the potential of one joint [J]; its derivative by alpha is joint_moment. Arguments and
+/// errors as for joint_moment.
 [[nodiscard]] double joint_potential(const Bending& bending, double segment_length, double alpha);
 
-/// Returns the derivative of joint_moment by alpha [N m].
+/// Returns the derivative of joint_moment by alpha [N m]. Arguments and errors as for joint_moment.
 [[nodiscard]] double joint_stiffness(const Bending& bending, double segment_length, double alpha);
 
 /// Adds the inner force of bending on every point.

@@ -19,14 +19,17 @@ struct QuarterCircle {
 
 /// Returns the number of points that a bend of radius `radius` needs so that no joint angle exceeds
 /// `alpha` (Formula 10 solved for N), at least five as in the paper.
+/// @throws std::invalid_argument if an argument is out of range
 [[nodiscard]] int points_for_radius(double length, double radius, double alpha);
 
 /// Returns c_c [N] such that `force` lengthens the rod by `percent` (paper, Formula 11): F 100 /
 /// percent.
+/// @throws std::invalid_argument unless both are > 0
 [[nodiscard]] double contraction_stiffness(double force, double percent);
 
 /// Returns c_c [N] for the rod's own weight (Formula 12): m g 100 / percent.
 /// @param mass  [kg];  @param gravity  [m/s^2];  @param percent  3 to 5 in the paper
+/// @throws std::invalid_argument unless all are > 0
 [[nodiscard]] double contraction_stiffness(double mass, double gravity, double percent);
 
 /// Trigonometric factor of Formula 13.
