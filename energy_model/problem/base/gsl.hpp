@@ -8,8 +8,8 @@
 
 namespace dlo::energy_model {
 
-/// Turns off GSL's error handler, which aborts the program. Every function that uses GSL calls this
-/// first and checks each status.
+/// Turns off GSL's error handler, which aborts the program. It has to be called before any other
+/// function of GSL, whose status then has to be checked.
 inline void silence_gsl() {
   static const bool silent = gsl_set_error_handler_off() != nullptr;
   (void)silent;

@@ -107,9 +107,10 @@ class EnergySolver {
   /// @throws std::invalid_argument if an option is out of range
   explicit EnergySolver(const EnergyOptions& options = {});
   ~EnergySolver();
-  /// Moves the buffers of another solver.
+  /// Moves the state of another solver, which may then only be assigned to or destroyed.
   EnergySolver(EnergySolver&& other) noexcept;
-  EnergySolver& operator=(EnergySolver&& other) noexcept;  ///< Moves the buffers of another solver.
+  /// Moves the state of another solver, which may then only be assigned to or destroyed.
+  EnergySolver& operator=(EnergySolver&& other) noexcept;
   EnergySolver(const EnergySolver& other) = delete;
   EnergySolver& operator=(const EnergySolver& other) = delete;
 
