@@ -36,10 +36,11 @@ struct Grip {
 ///
 /// The couple of a dead load keeps its axis. It has a potential only in a plane: minus torque times
 /// the angle of the tangent. `energy` accepts it across the plane of a rod without obstacles and
-/// with at most one clamp that holds a frame, and any couple at a clamp. `exact` accepts any
-/// couple; out of the plane stability is not judged.
+/// with at most one clamp that holds a frame, and any couple at a clamp. `exact` accepts any couple
+/// on a rod without obstacles; out of the plane stability is not judged.
 ///
-/// A load that follows the rod has no potential: only `exact` accepts it, and not at a clamp.
+/// A load that follows the rod has no potential: only `exact` accepts it, neither at a clamp nor
+/// with obstacles.
 struct Load {
   double at = 0;                                     ///< arc length [m], 0 .. length
   Eigen::Vector3d force = Eigen::Vector3d::Zero();   ///< [N]
@@ -66,7 +67,7 @@ struct LineLoad {
 
 /// A body that the rod's axis may not enter.
 struct Obstacle {
-  obstacle::Body body;  ///< [m]
+  obstacle::Body body;  ///< [m], without sharp edges
   /// Force per depth and per length of rod within the body [N/m^2], > 0; infinite: rigid.
   double stiffness = std::numeric_limits<double>::infinity();
 };
@@ -102,9 +103,10 @@ struct Section {
 /// the left; the roll of the clamp is added. Without a clamp the directors are free to rotate. A
 /// later clamp holds them only if it has a frame.
 struct Problem {
-  double length = 0;               ///< l [m], > 0
-  double bending_stiffness = 0;    ///< EI [N m^2], > 0; about d1 if bending_stiffness_2 is given
-  double torsional_stiffness = 0;  ///< GJ [N m^2]; > 0 if two clamps hold frames
+  double length = 0;             ///< l [m], > 0
+  double bending_stiffness = 0;  ///< EI [N m^2], > 0; about d1 if bending_stiffness_2 is given
+  /// GJ [N m^2]; > 0 if two clamps hold frames or the rod has_material_directors().
+  double torsional_stiffness = 0;
   Eigen::Vector3d weight_per_length = Eigen::Vector3d::Zero();  ///< rho A g [N/m]
   std::vector<Grip> grips;                                      ///< one or more
   std::vector<Load> loads;                                      ///< may be empty
