@@ -187,8 +187,8 @@ RodRate rate_of(const RodElement& piece, const RodState& state) {
   return rate;
 }
 
-bool integrate_rod(const RodElement& piece, double tolerance, RodState& state,
-                   RodVariation& variation, RodIntegrals& integrals) {
+std::optional<RodIntegrals> integrate_rod(const RodElement& piece, double tolerance,
+                                          RodState& state, RodVariation& variation) {
   const Eigen::Index parameters = variation.n.cols();
   IntegrationData flow{&piece, state.n, &variation};
   std::vector<double> y(static_cast<std::size_t>(flow.size()), 0.0);
@@ -198,31 +198,34 @@ bool integrate_rod(const RodElement& piece, double tolerance, RodState& state,
     all.segment<variation_size>(state_size + k * variation_size) << variation.r.col(k),
         variation.spin.col(k), variation.m.col(k);
   }
-  if (piece.length > 0 && !integrate(rod_rates, &flow, piece.length, tolerance, y)) return false;
+  if (piece.length > 0 && !integrate(rod_rates, &flow, piece.length, tolerance, y)) {
+    return std::nullopt;
+  }
   state.r = all.segment<3>(0);
   state.R = Eigen::Map<const Eigen::Matrix3d>(y.data() + 3);
   state.m = all.segment<3>(12);
   state.n -= piece.section.weight_of_interval(piece.begin, piece.length);
-  integrals = {all[first_integral], all[first_integral + 1], all[first_integral + 2],
-               all[first_integral + 3], flow.stretches() ? all[flow.size() - 1] : 0.0};
+  const RodIntegrals integrals{all[first_integral], all[first_integral + 1],
+                               all[first_integral + 2], all[first_integral + 3],
+                               flow.stretches() ? all[flow.size() - 1] : 0.0};
   for (Eigen::Index k = 0; k < parameters; ++k) {
     const Eigen::Index at = state_size + k * variation_size;
     variation.r.col(k) = all.segment<3>(at);
     variation.spin.col(k) = all.segment<3>(at + 3);
     variation.m.col(k) = all.segment<3>(at + 6);
   }
-  if (!flow.has_impulse()) return true;
+  if (!flow.has_impulse()) return integrals;
   state.n -= all.segment<3>(flow.impulse());
   for (Eigen::Index k = 0; k < parameters; ++k) {
     variation.n.col(k) -= all.segment<3>(flow.impulse() + 3 * (k + 1));
   }
-  return true;
+  return integrals;
 }
 
-bool integrate_rod(const RodElement& piece, double tolerance, RodState& state,
-                   RodIntegrals& integrals) {
+std::optional<RodIntegrals> integrate_rod(const RodElement& piece, double tolerance,
+                                          RodState& state) {
   RodVariation none;
-  return integrate_rod(piece, tolerance, state, none, integrals);
+  return integrate_rod(piece, tolerance, state, none);
 }
 
 }  // namespace dlo::energy_model

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <optional>
 #include <vector>
 
 #include "kirchhoff/rod_mesh.hpp"
@@ -79,13 +80,12 @@ struct RodRate {
 /// singularities.
 /// @param tolerance  local error per step, relative to 1 + |component|
 /// @param[in,out] state, variation  from the begin of the piece to its end
-/// @param[out] integrals  of the piece
-/// @return false if the integrator failed
-[[nodiscard]] bool integrate_rod(const RodElement& piece, double tolerance, RodState& state,
-                                 RodVariation& variation, RodIntegrals& integrals);
+/// @return integrals over the piece; std::nullopt if the integrator failed
+[[nodiscard]] std::optional<RodIntegrals> integrate_rod(const RodElement& piece, double tolerance,
+                                                        RodState& state, RodVariation& variation);
 
 /// Integrates the rod's equations over a piece without linearisation.
-[[nodiscard]] bool integrate_rod(const RodElement& piece, double tolerance, RodState& state,
-                                 RodIntegrals& integrals);
+[[nodiscard]] std::optional<RodIntegrals> integrate_rod(const RodElement& piece, double tolerance,
+                                                        RodState& state);
 
 }  // namespace dlo::energy_model

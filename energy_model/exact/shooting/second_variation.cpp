@@ -279,8 +279,7 @@ class VariationProblem {
   }
 
   void add_contact(const RodContact& contact, const std::vector<RodState>& at_ends) {
-    const auto end = std::lower_bound(elements_.begin(), elements_.end(), mesh_.s[contact.node]) -
-                     elements_.begin();
+    const Eigen::Index end = node_at(elements_, mesh_.s[contact.node]);
     const ConstrainedPosition& place = *place_at(end);
     const RodState& state = at_ends[static_cast<std::size_t>(end)];
     const obstacle::Gap gap = contact.gap(state.r);

@@ -249,8 +249,7 @@ bool ShootingSystem::interval_equations(const ShootingPoint& point, Eigen::Index
   const Eigen::Index placed = piece.surface != nullptr ? positions : 0;
   RodState end = node;
   RodVariation change = rows.derivatives != nullptr ? variation_by(placed) : RodVariation(0);
-  RodIntegrals integrals;
-  if (!integrate_rod(piece, tolerance_, end, change, integrals)) return false;
+  if (!integrate_rod(piece, tolerance_, end, change)) return false;
   const RodRate by_width =
       rate_of({piece.section, piece.natural, point.s[i + 1], 0, piece.surface}, end);
   const Eigen::Index own_index = i * unknowns_per_node();

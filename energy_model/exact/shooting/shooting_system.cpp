@@ -86,10 +86,10 @@ void ShootingSystem::share_arc_lengths() {
   }
 }
 
-std::vector<double> ShootingSystem::start_forces() const {
-  std::vector<double> forces;
-  for (const RodContact& contact : mesh_.contacts.nodes) forces.push_back(contact.force);
-  return forces;
+ShootingPoint ShootingSystem::start() const {
+  ShootingPoint point{mesh_.s, start_, {}};
+  for (const RodContact& contact : mesh_.contacts.nodes) point.forces.push_back(contact.force);
+  return point;
 }
 
 const RodContact* ShootingSystem::contact_at(Eigen::Index node) const {

@@ -66,7 +66,7 @@ class ShootingSystem {
   [[nodiscard]] double closed_gap_tolerance() const { return std::max(1e-11, 10 * tolerance_); }
 
   /// Returns the initial guess, projected to the plane if the motion is restricted to it.
-  [[nodiscard]] ShootingPoint start() const { return {mesh_.s, start_, start_forces()}; }
+  [[nodiscard]] ShootingPoint start() const;
 
   [[nodiscard]] ShootingPoint moved(const ShootingPoint& point, const Eigen::VectorXd& step) const;
 
@@ -109,7 +109,6 @@ class ShootingSystem {
   };
 
   [[nodiscard]] RodState in_plane(const RodState& state) const;
-  [[nodiscard]] std::vector<double> start_forces() const;
   void number_contacts();
   void share_arc_lengths();
 

@@ -20,18 +20,18 @@ void add_energies(const RodSpan& span, double tolerance, SpanEquilibrium& equili
     RodState state = equilibrium.nodes[static_cast<std::size_t>(i)];
     equilibrium.energy.load -= mesh.load.col(i).dot(state.r);
     if (i == mesh.intervals()) break;
-    RodIntegrals integrals;
-    if (!integrate_rod(rod_element(span, mesh, i), tolerance, state, integrals)) {
+    const auto integrals = integrate_rod(rod_element(span, mesh, i), tolerance, state);
+    if (!integrals) {
       equilibrium.converged = false;
       equilibrium.message = "the integrator failed while computing the energies";
       equilibrium.energy = {NAN, NAN, NAN, NAN};
       return;
     }
-    equilibrium.energy.bending += integrals.bending;
-    equilibrium.energy.twisting += integrals.twisting;
-    equilibrium.energy.gravity += integrals.gravity;
-    equilibrium.energy.stretch += integrals.stretch;
-    equilibrium.turns.push_back(integrals.turn);
+    equilibrium.energy.bending += integrals->bending;
+    equilibrium.energy.twisting += integrals->twisting;
+    equilibrium.energy.gravity += integrals->gravity;
+    equilibrium.energy.stretch += integrals->stretch;
+    equilibrium.turns.push_back(integrals->turn);
     equilibrium.before.push_back(state);
   }
 }
@@ -153,8 +153,7 @@ std::vector<RodState> states_at(const SpanEquilibrium& equilibrium, const RodSpa
     if (at > reached) {
       const RodElement piece{section_at(span, (nodes[i] + nodes[i + 1]) / 2), span.natural, reached,
                              at - reached, equilibrium.contacts.surface_of(i)};
-      RodIntegrals integrals;
-      if (!integrate_rod(piece, tolerance, state, integrals)) {
+      if (!integrate_rod(piece, tolerance, state)) {
         state.r.setConstant(std::numeric_limits<double>::quiet_NaN());
         state.R.setConstant(std::numeric_limits<double>::quiet_NaN());
       }
@@ -167,11 +166,8 @@ std::vector<RodState> states_at(const SpanEquilibrium& equilibrium, const RodSpa
 
 void carry_frames(const RodSpan& span, const RodMesh& mesh, double tolerance,
                   std::vector<RodState>& states) {
-  const std::size_t first =
-      span.clamps.empty() ? 0
-                          : static_cast<std::size_t>(std::lower_bound(mesh.s.begin(), mesh.s.end(),
-                                                                      span.clamps.front().at) -
-                                                     mesh.s.begin());
+  const auto first =
+      static_cast<std::size_t>(span.clamps.empty() ? 0 : node_at(mesh.s, span.clamps.front().at));
   RodState& first_state = states[first];
   first_state.R = span.clamps.empty()
                       ? frame_along(first_state.t(), first_state.t().unitOrthogonal())
@@ -179,10 +175,8 @@ void carry_frames(const RodSpan& span, const RodMesh& mesh, double tolerance,
   // Returns the frame at the end of an interval that results from the frame at its begin.
   const auto carried = [&](std::size_t i) {
     RodState state = states[i];
-    const auto interval = static_cast<Eigen::Index>(i);
-    RodIntegrals integrals;
-    const bool followed =
-        integrate_rod(rod_element(span, mesh, interval), tolerance, state, integrals);
+    const RodElement piece = rod_element(span, mesh, static_cast<Eigen::Index>(i));
+    const bool followed = integrate_rod(piece, tolerance, state).has_value();
     return transported(followed ? state.R : states[i].R, states[i + 1].t());
   };
   for (std::size_t i = first; i + 1 < states.size(); ++i) states[i + 1].R = carried(i);

@@ -133,10 +133,9 @@ class ClosedRod {
     if (!(-least > 1.01 * depth + confirmed_depth) || part.width < least_halved_width) return depth;
     const double half = part.width / 2;
     RodState middle = part.begin;
-    RodIntegrals integrals;
     const RodElement piece{section, start_.span.natural, part.s, half,
                            closed_.contacts.surface_of(i)};
-    if (!integrate_rod(piece, tolerance_, middle, integrals)) return NAN;
+    if (!integrate_rod(piece, tolerance_, middle)) return NAN;
     depth = deepest(i, {part.s, half, part.begin, middle}, depth);
     return std::isnan(depth) ? depth : deepest(i, {part.s + half, half, middle, part.end}, depth);
   }
@@ -164,10 +163,9 @@ class ClosedRod {
     const double width = (closed_.s[i + 1] - closed_.s[i]) / samples;
     for (int k = 0; k < samples; ++k) {
       RodState state = states.back();
-      RodIntegrals integrals;
       const RodElement piece{section_of(i), start_.span.natural, closed_.s[i] + k * width, width,
                              closed_.contacts.surface_of(i)};
-      if (!integrate_rod(piece, tolerance_, state, integrals)) state.r.setConstant(NAN);
+      if (!integrate_rod(piece, tolerance_, state)) state.r.setConstant(NAN);
       states.push_back(state);
     }
     return states;

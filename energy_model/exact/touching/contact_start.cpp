@@ -75,9 +75,7 @@ class Layout {
   }
 
   [[nodiscard]] Eigen::Index node_at(double arc_length) const {
-    const Eigen::VectorXd& s = start_.mesh.s;
-    return std::lower_bound(s.begin(), s.end(), snapped(arc_length / l_) - arc_length_rounding) -
-           s.begin();
+    return energy_model::node_at(start_.mesh.s, snapped(arc_length / l_) - arc_length_rounding);
   }
 
   [[nodiscard]] bool place_contacts() {
@@ -205,8 +203,7 @@ class Layout {
         }
         if (i + 1 == contact.end) break;
         RodState end = state;
-        RodIntegrals integrals;
-        if (!integrate_rod(rod_element(start_.span, start_.mesh, i), tolerance, end, integrals)) {
+        if (!integrate_rod(rod_element(start_.span, start_.mesh, i), tolerance, end)) {
           return false;
         }
         start_.states[static_cast<std::size_t>(i + 1)].n = end.n;
