@@ -2,7 +2,6 @@
 
 #include <Eigen/Geometry>
 #include <algorithm>
-#include <chrono>
 #include <cmath>
 #include <limits>
 #include <optional>
@@ -225,7 +224,6 @@ Equilibrium confirm_start(const Problem& problem, const ExactOptions& options,
 /// have the status `time_limit`: they are equilibria, but the search for others is incomplete.
 std::vector<Equilibrium> solve(const Problem& problem, const ExactOptions& options) {
   const Deadline deadline(options.time_limit);
-  const auto begin = std::chrono::steady_clock::now();
   require_positive("solve_exact", "tolerance", options.tolerance);
   require(options.time_limit > 0, "solve_exact", "time_limit", options.time_limit, "> 0");
   require(!problem.confined_to_plane, "solve_exact", "confined_to_plane", 1,
@@ -247,8 +245,7 @@ std::vector<Equilibrium> solve(const Problem& problem, const ExactOptions& optio
   } else {
     found.equilibria = {confirm_start(problem, options, deadline)};
   }
-  const double seconds =
-      std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
+  const double seconds = deadline.spent();
   for (Equilibrium& equilibrium : found.equilibria) {
     equilibrium.seconds = seconds;
     separate_line_loads(problem, equilibrium);

@@ -22,17 +22,15 @@ double distance(const RodSpan& span, const RelaxedPolygon& a, const RelaxedPolyg
   return distance;
 }
 
-Eigen::Matrix3Xd tangents_along(const std::vector<Quaterniond>& frames) {
+}  // namespace
+
+Eigen::Matrix3Xd RelaxedPolygon::tangents() const {
   Eigen::Matrix3Xd result(3, static_cast<Eigen::Index>(frames.size()));
   for (Eigen::Index i = 0; i < result.cols(); ++i) {
     result.col(i) = frames[static_cast<std::size_t>(i)] * Eigen::Vector3d::UnitZ();
   }
   return result;
 }
-
-}  // namespace
-
-Eigen::Matrix3Xd RelaxedPolygon::tangents() const { return tangents_along(frames); }
 
 RelaxedPolygon relax_on_mesh(const RodSpan& span, const RodMesh& finer, const RodMesh& mesh,
                              const RelaxedPolygon& polygon, const Deadline& deadline) {

@@ -180,11 +180,6 @@ Eigen::Matrix3d material_frame(const Problem& problem) {
   return frame_along(d2.unitOrthogonal().cross(d2), d2.unitOrthogonal());
 }
 
-void require_no_obstacles(const Problem& problem) {
-  require(problem.obstacles.empty(), "solve_exact", "number of obstacles",
-          static_cast<double>(problem.obstacles.size()), "0");
-}
-
 }  // namespace
 
 const RodSpan::Clamp* RodSpan::clamp_at(double s) const {
@@ -242,7 +237,6 @@ RodSpan whole_span(const Problem& problem) {
 
 RodSpan whole_span_with_axes(const Problem& problem) {
   constexpr double rounding = 1e-12;
-  require_no_obstacles(problem);
   const bool material = has_material_directors(problem);
   RodSpan span = material ? whole_directed_span(problem) : whole_span(problem);
   span.has_potential = has_potential(problem);
@@ -299,7 +293,6 @@ std::vector<Eigen::Vector3d> sample_natural_strains(const RodSpan& span, int cou
 }
 
 RodSpan whole_directed_span(const Problem& problem) {
-  require_no_obstacles(problem);
   RodSpan span = whole_span(problem);
   span.natural = [problem](double s) {
     return Eigen::Vector3d(problem.length * natural_strain(problem, s * problem.length));
@@ -310,7 +303,6 @@ RodSpan whole_directed_span(const Problem& problem) {
 
 std::vector<RodSpan> cut_at_clamps(const Problem& problem) {
   check(problem);
-  require_no_obstacles(problem);
   const std::vector<OrderedGrip> grips = ordered_grips(problem);
   std::vector<double> cuts = {0, 1};
   for (const OrderedGrip& grip : grips) {

@@ -90,9 +90,8 @@ using ClampFrames = std::vector<std::optional<Eigen::Matrix3d>>;
 [[nodiscard]] RodSpan without_frames(RodSpan span);
 
 /// Cuts a problem at its clamps, as for a round rod that is intrinsically straight. Grips within
-/// 1e-9 l of an end of the rod are moved to that end.
-/// @throws std::invalid_argument if the problem is out of range or has obstacles, or as
-/// ordered_grips()
+/// 1e-9 l of an end of the rod are moved to that end. Obstacles are ignored.
+/// @throws std::invalid_argument if the problem is out of range, or as ordered_grips()
 [[nodiscard]] std::vector<RodSpan> cut_at_clamps(const Problem& problem);
 
 /// Returns the whole rod as one span with its clamps. Obstacles are ignored, and loads on clamps
@@ -103,7 +102,7 @@ using ClampFrames = std::vector<std::optional<Eigen::Matrix3d>>;
 
 /// Returns the whole of a rod with material directors as one span, with its natural strains and its
 /// plane. Its torque passes through clamps that do not hold the frame.
-/// @throws std::invalid_argument as whole_span(), or if there are obstacles
+/// @throws std::invalid_argument as whole_span()
 [[nodiscard]] RodSpan whole_directed_span(const Problem& problem);
 
 /// Returns the whole rod as whole_directed_span() or whole_span() does, for loads without a

@@ -1,7 +1,6 @@
 #include "dlo/energy_model/chain.hpp"
 
 #include <algorithm>
-#include <chrono>
 #include <cmath>
 #include <limits>
 #include <numbers>
@@ -13,16 +12,11 @@
 namespace dlo::energy_model {
 namespace {
 
-double joint_length(const ChainProblem& problem, Eigen::Index i) {
-  return (problem.segment_lengths[i - 1] + problem.segment_lengths[i]) / 2;
-}
-
 /// Returns the joint between segments i-1 and i at the angle alpha, including its stress-free
 /// angle.
 AngleJoint joint_at(const ChainProblem& problem, Eigen::Index i, double alpha) {
-  const double stiffness =
-      problem.stiffnesses.size() > 0 ? problem.stiffnesses[i - 1] : problem.stiffness;
-  const double L = joint_length(problem, i);
+  const double stiffness = joint_stiffness(problem, i);
+  const double L = joint_length(problem.segment_lengths, i);
   AngleJoint joint = joint_by_angle(problem.law, stiffness, L, alpha);
   if (problem.natural_turns.size() == 0) return joint;
   const double natural = problem.natural_turns[i - 1];
@@ -79,9 +73,8 @@ Eigen::VectorXd start_from_moments(const ChainProblem& problem) {
   double moment = 0;
   for (Eigen::Index i = n - 1; i >= 1; --i) {
     moment += forces.col(i).dot(normal) * problem.segment_lengths[i];
-    const double L = joint_length(problem, i);
-    const double stiffness =
-        problem.stiffnesses.size() > 0 ? problem.stiffnesses[i - 1] : problem.stiffness;
+    const double L = joint_length(problem.segment_lengths, i);
+    const double stiffness = joint_stiffness(problem, i);
     const double size = problem.law == JointLaw::paper
                             ? std::cbrt(4 * std::abs(moment) / (stiffness * L))
                             : std::abs(moment) * L / stiffness;
@@ -251,16 +244,14 @@ double chain_energy(const ChainProblem& problem, const Eigen::Ref<const Eigen::V
 }
 
 ChainResult solve_chain(const ChainProblem& problem, const ChainOptions& options) {
-  const auto begin = std::chrono::steady_clock::now();
-  check(problem, options);
   const Deadline deadline(options.time_limit);
+  check(problem, options);
   const Eigen::Index n = problem.segment_lengths.size();
   ChainResult result;
   result.angles =
       options.start_angles.size() > 0 ? options.start_angles : start_from_moments(problem);
   result.angles[0] = problem.first_angle;
 
-  Eigen::VectorXd gradient(n);
   const double moment_scale =
       problem.node_forces.colwise().norm().sum() * problem.segment_lengths.sum() +
       // Not zero without forces: the straight chain then converges at once.
@@ -268,16 +259,14 @@ ChainResult solve_chain(const ChainProblem& problem, const ChainOptions& options
   minimise_by_newton(problem, options, deadline, moment_scale, result);
   result.message = to_string(result.status);
 
-  const double total = chain_energy(problem, result.angles, gradient);
   result.points = chain_points(problem, result.angles);
   for (Eigen::Index i = 1; i < n; ++i) {
     result.bending_energy += joint_at(problem, i, result.angles[i] - result.angles[i - 1]).energy;
   }
-  result.load_energy = total - result.bending_energy;
   const Eigen::Vector2d across(-std::sin(result.angles[0]), std::cos(result.angles[0]));
   result.clamp_torque = -joint_at(problem, 1, result.angles[1] - result.angles[0]).moment -
                         problem.segment_lengths[0] * across.dot(segment_forces(problem).col(0));
-  result.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
+  result.seconds = deadline.spent();
   return result;
 }
 

@@ -1,7 +1,6 @@
 #include "dlo/energy_model/polygon.hpp"
 
 #include <algorithm>
-#include <chrono>
 #include <cmath>
 #include <limits>
 #include <optional>
@@ -223,9 +222,9 @@ class PolygonDescent {
     const Eigen::Vector3d first = problem_.held.front().position;
     const Eigen::Matrix3Xd arms = result_.points.colwise() - first;
     const double work = problem_.node_forces.cwiseAbs().cwiseProduct(arms.cwiseAbs()).sum();
-    return 16 * epsilon * (std::abs(energy_) + work + first.norm() * forces_norm());
+    const double forces = problem_.node_forces.colwise().norm().sum();
+    return 16 * epsilon * (std::abs(energy_) + work + first.norm() * forces);
   }
-  [[nodiscard]] double forces_norm() const { return problem_.node_forces.colwise().norm().sum(); }
 
   void count_twists() {
     for (PolygonTwist& twist : problem_.twists) {
@@ -346,9 +345,8 @@ double first_stretch_stiffness(const PolygonProblem& problem, const Eigen::Matri
 
 PolygonResult solve_polygon(const PolygonProblem& problem, const Points& start,
                             const PolygonOptions& options) {
-  const auto begin = std::chrono::steady_clock::now();
-  require_polygon(problem, start, options);
   const Deadline deadline(options.time_limit);
+  require_polygon(problem, start, options);
   PolygonResult result;
   result.points = start;
   for (const HeldPoint& held : problem.held) result.points.col(held.point) = held.position;
@@ -388,7 +386,7 @@ PolygonResult solve_polygon(const PolygonProblem& problem, const Points& start,
     }
     break;
   }
-  result.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
+  result.seconds = deadline.spent();
   return result;
 }
 

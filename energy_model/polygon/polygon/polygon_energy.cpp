@@ -76,14 +76,6 @@ struct Corner : SegmentPair {
   }
 };
 
-double joint_length(const PolygonProblem& problem, Eigen::Index i) {
-  return (problem.rest_lengths[i - 1] + problem.rest_lengths[i]) / 2;
-}
-
-double joint_stiffness(const PolygonProblem& problem, Eigen::Index i) {
-  return problem.stiffnesses.size() > 0 ? problem.stiffnesses[i - 1] : problem.stiffness;
-}
-
 /// Contribution to the potential P of a joint by its stress-free angle alpha_0: -P(alpha_0) - C
 /// (alpha - alpha_0), C = P'(alpha_0), alpha from a to b in the plane z = 0.
 struct NaturalTurn {
@@ -93,8 +85,8 @@ struct NaturalTurn {
 
 NaturalTurn natural_turn(const PolygonProblem& problem, Eigen::Index i) {
   const double turn = problem.natural_turns[i - 1];
-  const AngleJoint free =
-      joint_by_angle(problem.law, joint_stiffness(problem, i), joint_length(problem, i), turn);
+  const AngleJoint free = joint_by_angle(problem.law, joint_stiffness(problem, i),
+                                         joint_length(problem.rest_lengths, i), turn);
   return {free.moment, free.energy - free.moment * turn};
 }
 
@@ -140,6 +132,26 @@ void for_each_sample(const std::vector<bool>& held, const PointObstacle& obstacl
       const double share = static_cast<double>(k) / obstacle.samples;
       action(i, share, Eigen::Vector3d((1 - share) * points.col(i) + share * points.col(i + 1)));
     }
+  }
+}
+
+void add_obstacle_hessian(const PolygonProblem& problem, const Points& points, HessianTerms which,
+                          const AddBlock& add) {
+  const std::vector<bool> held = held_points(problem);
+  for (const PointObstacle& obstacle : problem.obstacles) {
+    const auto stiffen = [&](Eigen::Index i, double share, const Eigen::Vector3d& point) {
+      if (obstacle.body.clearance(point) >= 0) return;
+      const double k = sample_stiffness(obstacle, i, share);
+      const obstacle::Gap gap = obstacle.body.gap(point);
+      Eigen::Matrix3d H = k * gap.gradient * gap.gradient.transpose();
+      if (which == HessianTerms::all) H += k * gap.value * gap.hessian;
+      add(i, i, (1 - share) * (1 - share) * H);
+      if (share == 0) return;
+      add(i + 1, i + 1, share * share * H);
+      add(i + 1, i, share * (1 - share) * H);
+      add(i, i + 1, share * (1 - share) * H);
+    };
+    for_each_sample(held, obstacle, points, stiffen);
   }
 }
 
@@ -191,8 +203,8 @@ double polygon_energy(const PolygonProblem& problem, const Points& points,
   }
   for (Eigen::Index i = 1; i < n; ++i) {
     const Corner corner(points, i);
-    const Joint j =
-        joint(problem.law, joint_stiffness(problem, i), joint_length(problem, i), corner.h);
+    const Joint j = joint(problem.law, joint_stiffness(problem, i),
+                          joint_length(problem.rest_lengths, i), corner.h);
     energy += j.energy;
     // h = (1 - cos alpha) / 2
     Eigen::Vector3d by_a = -j.first / 2 * corner.by_a;
@@ -227,30 +239,6 @@ double polygon_energy(const PolygonProblem& problem, const Points& points,
   return energy;
 }
 
-namespace {
-
-void add_obstacle_hessian(const PolygonProblem& problem, const Points& points, HessianTerms which,
-                          const AddBlock& add) {
-  const std::vector<bool> held = held_points(problem);
-  for (const PointObstacle& obstacle : problem.obstacles) {
-    const auto stiffen = [&](Eigen::Index i, double share, const Eigen::Vector3d& point) {
-      if (obstacle.body.clearance(point) >= 0) return;
-      const double k = sample_stiffness(obstacle, i, share);
-      const obstacle::Gap gap = obstacle.body.gap(point);
-      Eigen::Matrix3d H = k * gap.gradient * gap.gradient.transpose();
-      if (which == HessianTerms::all) H += k * gap.value * gap.hessian;
-      add(i, i, (1 - share) * (1 - share) * H);
-      if (share == 0) return;
-      add(i + 1, i + 1, share * share * H);
-      add(i + 1, i, share * (1 - share) * H);
-      add(i, i + 1, share * (1 - share) * H);
-    };
-    for_each_sample(held, obstacle, points, stiffen);
-  }
-}
-
-}  // namespace
-
 void polygon_hessian(const PolygonProblem& problem, const Points& points, HessianTerms which,
                      const AddBlock& add) {
   const bool all = which == HessianTerms::all;
@@ -268,7 +256,8 @@ void polygon_hessian(const PolygonProblem& problem, const Points& points, Hessia
   }
   for (Eigen::Index i = 1; i < n; ++i) {
     const Corner c(points, i);
-    const Joint j = joint(problem.law, joint_stiffness(problem, i), joint_length(problem, i), c.h);
+    const Joint j =
+        joint(problem.law, joint_stiffness(problem, i), joint_length(problem.rest_lengths, i), c.h);
     const double curved = (all ? j.second : std::max(j.second, 0.0)) / 4;
     const double slope = -j.first / 2;  // derivative of the potential by cos alpha
     const Eigen::Matrix3d projector_u = one - c.u * c.u.transpose();

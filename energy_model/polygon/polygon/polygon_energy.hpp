@@ -46,6 +46,17 @@ struct AngleJoint {
 /// Computes the potential of a joint between segments of mean length L that is bent by alpha [rad].
 [[nodiscard]] AngleJoint joint_by_angle(JointLaw law, double stiffness, double L, double alpha);
 
+/// Returns the mean of the lengths of the two segments at joint i.
+[[nodiscard]] inline double joint_length(const Eigen::VectorXd& lengths, Eigen::Index i) {
+  return (lengths[i - 1] + lengths[i]) / 2;
+}
+
+/// Returns the bending stiffness of joint i of a chain or polygon.
+template <typename JointedProblem>
+[[nodiscard]] double joint_stiffness(const JointedProblem& problem, Eigen::Index i) {
+  return problem.stiffnesses.size() > 0 ? problem.stiffnesses[i - 1] : problem.stiffness;
+}
+
 /// The two segments that meet at a point of a polygon.
 struct SegmentPair {
   Eigen::Vector3d u, v;  ///< unit vectors of the segment before and the segment after the point
@@ -60,10 +71,6 @@ struct SegmentPair {
     v /= b;
   }
 };
-
-/// Checks the twists of a polygon.
-/// @throws std::invalid_argument naming the first number out of range
-void require_twists(const PolygonProblem& problem);
 
 /// Returns the energy of all twists [J] and adds their gradient [N] to `gradient`.
 [[nodiscard]] double add_twist_energy(const PolygonProblem& problem,

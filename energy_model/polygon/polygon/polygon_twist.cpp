@@ -1,10 +1,8 @@
-
 #include <Eigen/Geometry>
-#include <algorithm>
 #include <cmath>
 #include <numbers>
 
-#include "base/require.hpp"
+#include "base/spin.hpp"
 #include "polygon/polygon_energy.hpp"
 
 namespace dlo::energy_model {
@@ -66,34 +64,6 @@ double polygon_twist_angle(const PolygonTwist& twist, const Points& points) {
   return angle + 2 * std::numbers::pi * std::round((twist.angle - angle) / (2 * std::numbers::pi));
 }
 
-void require_twists(const PolygonProblem& problem) {
-  constexpr const char* name = "PolygonProblem";
-  const Eigen::Index n = problem.rest_lengths.size();
-  const auto count = static_cast<double>(problem.twists.size());
-  require(problem.twists.empty() || problem.law != JointLaw::paper, name, "number of twists", count,
-          "0 for the paper's law");
-  require(problem.twists.empty() || problem.natural_turns.size() == 0, name, "number of twists",
-          count, "0 with natural turns");
-  const auto is_held = [&](Eigen::Index point) {
-    return std::any_of(problem.held.begin(), problem.held.end(),
-                       [point](const HeldPoint& held) { return held.point == point; });
-  };
-  for (const PolygonTwist& twist : problem.twists) {
-    for (const Eigen::Index segment : {twist.first_segment, twist.last_segment}) {
-      const bool held = segment >= 0 && segment < n && is_held(segment) && is_held(segment + 1);
-      require(held, name, "segment of a twist", static_cast<double>(segment),
-              "one whose two points are held");
-    }
-    require(twist.first_segment < twist.last_segment, name, "first_segment of a twist",
-            static_cast<double>(twist.first_segment), "less than its last_segment");
-    require_positive(name, "compliance of a twist", twist.compliance);
-    require_finite(name, "angle of a twist", twist.angle);
-    for (const Eigen::Vector3d& d1 : {twist.first_d1, twist.last_d1}) {
-      require_positive(name, "|d1| of a twist", d1.norm());
-    }
-  }
-}
-
 double add_twist_energy(const PolygonProblem& problem, const Points& points,
                         Eigen::Ref<Eigen::Matrix3Xd> gradient) {
   double energy = 0;
@@ -116,9 +86,8 @@ void add_twist_hessian(const PolygonProblem& problem, const Points& points, cons
       const Eigen::Vector3d t = (u + v) / corner.sum;
       const Eigen::Matrix3d aa = -moment / (2 * a * a) * q * (t + u).transpose();
       const Eigen::Matrix3d bb = -moment / (2 * b * b) * q * (t + v).transpose();
-      Eigen::Matrix3d u_cross;
-      u_cross << 0, -u.z(), u.y(), u.z(), 0, -u.x(), -u.y(), u.x(), 0;
-      const Eigen::Matrix3d ab = moment / (a * b) * (u_cross / corner.sum - q * t.transpose());
+      const Eigen::Matrix3d ab =
+          moment / (a * b) * (cross_matrix(u) / corner.sum - q * t.transpose());
       add_difference_block(i - 1, i - 1, aa + aa.transpose(), add);
       add_difference_block(i, i, bb + bb.transpose(), add);
       add_difference_block(i - 1, i, ab, add);

@@ -1,4 +1,4 @@
-
+#include <algorithm>
 #include <cmath>
 #include <string>
 #include <vector>
@@ -11,6 +11,8 @@ namespace {
 
 using Points = Eigen::Ref<const Eigen::Matrix3Xd>;
 
+constexpr const char* name = "PolygonProblem";
+
 /// Checks that vectors have no z component, as polygons whose joints are bent at rest require.
 void require_in_plane(const char* problem, const char* what, const Points& vectors) {
   const double across = vectors.row(2).cwiseAbs().maxCoeff();
@@ -18,11 +20,38 @@ void require_in_plane(const char* problem, const char* what, const Points& vecto
           "0 with natural turns");
 }
 
+/// Checks the twists of a polygon.
+void require_twists(const PolygonProblem& problem) {
+  const Eigen::Index n = problem.rest_lengths.size();
+  const auto count = static_cast<double>(problem.twists.size());
+  require(problem.twists.empty() || problem.law != JointLaw::paper, name, "number of twists", count,
+          "0 for the paper's law");
+  require(problem.twists.empty() || problem.natural_turns.size() == 0, name, "number of twists",
+          count, "0 with natural turns");
+  const auto is_held = [&](Eigen::Index point) {
+    return std::any_of(problem.held.begin(), problem.held.end(),
+                       [point](const HeldPoint& held) { return held.point == point; });
+  };
+  for (const PolygonTwist& twist : problem.twists) {
+    for (const Eigen::Index segment : {twist.first_segment, twist.last_segment}) {
+      const bool held = segment >= 0 && segment < n && is_held(segment) && is_held(segment + 1);
+      require(held, name, "segment of a twist", static_cast<double>(segment),
+              "one whose two points are held");
+    }
+    require(twist.first_segment < twist.last_segment, name, "first_segment of a twist",
+            static_cast<double>(twist.first_segment), "less than its last_segment");
+    require_positive(name, "compliance of a twist", twist.compliance);
+    require_finite(name, "angle of a twist", twist.angle);
+    for (const Eigen::Vector3d& d1 : {twist.first_d1, twist.last_d1}) {
+      require_positive(name, "|d1| of a twist", d1.norm());
+    }
+  }
+}
+
 }  // namespace
 
 void require_polygon(const PolygonProblem& problem, const Points& start,
                      const PolygonOptions& options) {
-  constexpr const char* name = "PolygonProblem";
   const Eigen::Index n = problem.rest_lengths.size();
   require(n >= 2, name, "number of segments", static_cast<double>(n), ">= 2");
   const double shortest = problem.rest_lengths.minCoeff();

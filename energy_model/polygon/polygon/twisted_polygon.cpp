@@ -1,6 +1,5 @@
 #include <Eigen/Geometry>
 #include <algorithm>
-#include <chrono>
 #include <cmath>
 #include <string>
 #include <utility>
@@ -77,9 +76,8 @@ class TwistHomotopy {
 PolygonResult twist_polygon(const PolygonProblem& problem,
                             const Eigen::Ref<const Eigen::Matrix3Xd>& start,
                             const PolygonOptions& options) {
-  const auto begin = std::chrono::steady_clock::now();
-  require_polygon(problem, start, options);
   const Deadline deadline(options.time_limit);
+  require_polygon(problem, start, options);
   const TwistHomotopy homotopy(problem, start);
   const double length = problem.rest_lengths.sum();
   PolygonOptions step_options = options;
@@ -125,7 +123,7 @@ PolygonResult twist_polygon(const PolygonProblem& problem,
     now.message = std::string(to_string(now.status)) + " after " + std::to_string(part) +
                   " of the twist was applied";
   }
-  now.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
+  now.seconds = deadline.spent();
   return now;
 }
 

@@ -19,9 +19,10 @@ class Deadline {
     return interrupted() || (std::isfinite(seconds_) && remaining() <= 0);
   }
   /// Returns the remaining time [s], negative after the deadline.
-  [[nodiscard]] double remaining() const {
-    const std::chrono::duration<double> spent = std::chrono::steady_clock::now() - begin_;
-    return seconds_ - spent.count();
+  [[nodiscard]] double remaining() const { return seconds_ - spent(); }
+  /// Returns the time since the limit was set [s].
+  [[nodiscard]] double spent() const {
+    return std::chrono::duration<double>(std::chrono::steady_clock::now() - begin_).count();
   }
 
  private:

@@ -69,7 +69,6 @@ struct [[nodiscard]] ChainResult {
   Eigen::Matrix2Xd points;  ///< [m], 2 x (n+1)
   /// Energy of all joints [J]; zero if every joint has its stress-free angle.
   double bending_energy = 0;
-  double load_energy = 0;  ///< potential of all forces, zero with every point at `start` [J]
 };
 
 /// Minimises the joint potentials minus the work of the forces by damped Newton steps over the
