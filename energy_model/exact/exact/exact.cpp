@@ -135,10 +135,9 @@ Problem without_nonpotential_loads(Problem problem, const RodSpan& span) {
 /// Returns the problem with its loads replaced by dead ones that are equal to them on a given
 /// shape.
 Problem with_frozen_loads(const Problem& problem, const RodSpan& span, const Equilibrium& shape) {
-  constexpr Eigen::Index sample_intervals = 64;
   Problem dead = problem;
   if (problem.drag) {
-    const std::vector<double> s = equal_arc_lengths(problem.length, sample_intervals + 1);
+    const std::vector<double> s = equal_arc_lengths(problem.length, 65);
     const Eigen::Matrix3Xd tangents = shape.sample(s).tangents;
     for (std::size_t i = 1; i < s.size(); ++i) {
       const auto column = static_cast<Eigen::Index>(i);

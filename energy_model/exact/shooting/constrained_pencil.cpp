@@ -79,8 +79,7 @@ SmallestMode smallest_mode(const ConstrainedPencil& pencil,
   if (!factorise(pencil, shift, factors)) return result;
   Eigen::VectorXd x(pencil.second.rows());
   for (Eigen::Index i = 0; i < x.size(); ++i) x[i] = std::sin(1.0 + 2.3 * static_cast<double>(i));
-  constexpr int iterations = 12;
-  for (int i = 0; i < iterations; ++i) {
+  for (int i = 0; i < 12; ++i) {
     const Eigen::VectorXd right = pencil.norm * x;
     x = factors.solve(right);
     x /= std::sqrt(x.dot(pencil.norm * x));

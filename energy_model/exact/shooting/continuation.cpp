@@ -24,8 +24,6 @@ constexpr double step_growth = 1.6;  // ratio of a longer step to the one before
 constexpr int step_iterations = 12;
 constexpr double largest_tangent_change = 0.5;     // largest change of a tangent in a step
 constexpr double largest_prediction_error = 0.15;  // largest error of a predicted tangent
-// Local error of the integrator before the end of the branch.
-constexpr double branch_tolerance = 1e-10;
 
 double largest_change(const std::vector<RodState>& a, const std::vector<RodState>& b) {
   return (tangents_of(a) - tangents_of(b)).colwise().norm().maxCoeff();
@@ -49,7 +47,7 @@ class Continuation {
   Continuation(const Family& family, const SpanEquilibrium& begin, double tolerance,
                const Deadline& deadline)
       : family_(family),
-        options_{.tolerance = std::max(tolerance, branch_tolerance),
+        options_{.tolerance = std::max(tolerance, coarse_tolerance),
                  .motion = family.motion,
                  .max_iterations = step_iterations,
                  .deadline = deadline},
@@ -272,8 +270,7 @@ SpanEquilibrium twist_span(const RodSpan& span, const SpanEquilibrium& without, 
 
 SpanEquilibrium follow_loads(const RodSpan& span, const SpanEquilibrium& unloaded, double tolerance,
                              const Deadline& deadline) {
-  constexpr double rounding = 1e-9;
-  const bool flat = span.round() && out_of_plane(span, unloaded.nodes) < rounding;
+  const bool flat = span.round() && out_of_plane(span, unloaded.nodes) < 1e-9;
   const Family family{.span = [&](double share) { return scale_nonpotential_loads(span, share); },
                       .frames = [&](double) { return unloaded.frames; },
                       .first = 0.125,

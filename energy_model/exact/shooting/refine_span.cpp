@@ -12,8 +12,6 @@ namespace dlo::energy_model {
 namespace {
 
 constexpr double largest_force = 1e6;  // largest force over b that the first mesh resolves
-// Component of the tangents normal to the plane up to which a shape is treated as planar.
-constexpr double start_plane_tolerance = 1e-6;
 
 /// Returns the twist that a shape has for a span whose clamps hold frames; null if it has none.
 const TwistedPart* twist_of(const RodSpan& span, const Problem& problem, const Equilibrium& shape) {
@@ -32,8 +30,7 @@ Samples sample_at(const RodSpan& span, const Problem& problem, const Equilibrium
     arc_lengths.push_back(std::min((span.begin + at) * problem.length, problem.length));
   }
   // At a clamp the curvature jumps; the value on this side is required.
-  constexpr double one_sided_offset = 1e-12;
-  if (span.begin > 0) arc_lengths.front() += one_sided_offset * problem.length;
+  if (span.begin > 0) arc_lengths.front() += 1e-12 * problem.length;
   return shape.sample(arc_lengths);
 }
 
@@ -144,7 +141,7 @@ SpanEquilibrium refine_span(const RodSpan& span, const Problem& problem, const E
     return shoot_span(span, mesh, std::move(start), held_frames(span), options);
   }
   const RodSpan released = without_frames(span);
-  if (out_of_plane(span, start) < start_plane_tolerance) options.motion = Motion::in_plane;
+  if (out_of_plane(span, start) < plane_tolerance) options.motion = Motion::in_plane;
   SpanEquilibrium equilibrium = shoot_span(released, mesh_at(released, mesh.s), std::move(start),
                                            released_frames(released), options);
   return span.twisted() ? twist_span(span, equilibrium, tolerance, deadline) : equilibrium;

@@ -100,8 +100,7 @@ Samples sample(const Problem& problem, const SolvedRod& rod, double tolerance,
   if (rod.has_directors()) samples.d1.resize(3, samples.points.cols());
   std::vector<std::size_t> order(arc_lengths.size());
   std::iota(order.begin(), order.end(), std::size_t{0});
-  std::sort(order.begin(), order.end(),
-            [&](std::size_t a, std::size_t b) { return arc_lengths[a] < arc_lengths[b]; });
+  std::ranges::sort(order, {}, [&](std::size_t k) { return arc_lengths[k]; });
   std::size_t first = 0;  // index of the first arc length of a span, in order
   for (std::size_t p = 0; p < rod.spans.size(); ++p) {
     const RodSpan& span = rod.spans[p];
@@ -137,7 +136,6 @@ Equilibrium assemble(const Problem& problem, SolvedRod solved, double tolerance)
                             .spin = {}};
   Energies energy;
   bool unjudged = false;  // whether couples act on a shape that leaves its plane
-  constexpr double plane_tolerance = 1e-6;
   for (std::size_t i = 0; i < rod->spans.size(); ++i) {
     const RodSpan& span = rod->spans[i];
     const SpanEquilibrium& equilibrium = rod->equilibria[i];

@@ -10,9 +10,6 @@
 namespace dlo::energy_model {
 namespace {
 
-/// Local error of the integrator for the second variation, whose elements are accurate to 1e-8.
-constexpr double variation_tolerance = 1e-10;
-
 void add_energies(const RodSpan& span, double tolerance, SpanEquilibrium& equilibrium) {
   const RodMesh mesh = closed_mesh(span, equilibrium);
   equilibrium.before.resize(1);
@@ -124,7 +121,7 @@ void judge_stability(const RodSpan& span, double tolerance, SpanEquilibrium& equ
   equilibrium.stability = second_variation(
       span, closed_mesh(span, equilibrium), equilibrium.frames,
       bending_force(span, equilibrium.nodes), [&](const std::vector<double>& s) {
-        return states_at(equilibrium, span, s, std::max(tolerance, variation_tolerance));
+        return states_at(equilibrium, span, s, std::max(tolerance, coarse_tolerance));
       });
   if (equilibrium.stability.negative < 0) {
     equilibrium.converged = false;

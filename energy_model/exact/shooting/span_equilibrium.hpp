@@ -39,6 +39,13 @@ struct SpanEquilibrium {
 /// Largest growth exponent of errors over an interval: its length times bending_force()^(1/2).
 inline constexpr double largest_growth = 3;
 
+/// Component of tangents or directors normal to the plane of a span up to which they lie in it.
+inline constexpr double plane_tolerance = 1e-6;
+
+/// Local error of the integrator where 10 digits of a shape suffice: on a branch before its end,
+/// for the second variation, whose elements are accurate to 1e-8, and to compare shapes.
+inline constexpr double coarse_tolerance = 1e-10;
+
 /// Returns the length of the longest interval.
 [[nodiscard]] double longest_of(const RodMesh& mesh);
 

@@ -15,8 +15,6 @@ namespace {
 
 using Eigen::Quaterniond;
 
-// Largest component of directors across the plane of planar frames.
-constexpr double in_plane = 1e-6;
 constexpr double same_directors = 1e-6;  // largest difference of directors of two equal equilibria
 // Maximum number of polygons to shoot from if one converges to a minimum.
 constexpr std::size_t most_descents = 6;
@@ -37,11 +35,10 @@ constexpr double largest_node_rotation =
 /// Whether two equilibria are equal. The frames of a round rod without twist are arbitrary, so that
 /// only its tangents are compared.
 bool are_equal_equilibria(const RodSpan& span, const SpanEquilibrium& a, const SpanEquilibrium& b) {
-  constexpr double sample_tolerance = 1e-10;
   const Eigen::VectorXd probes = Eigen::VectorXd::LinSpaced(33, 0, span.length);
   const std::vector<double> s(probes.begin(), probes.end());
-  const std::vector<RodState> first = states_at(a, span, s, sample_tolerance);
-  const std::vector<RodState> second = states_at(b, span, s, sample_tolerance);
+  const std::vector<RodState> first = states_at(a, span, s, coarse_tolerance);
+  const std::vector<RodState> second = states_at(b, span, s, coarse_tolerance);
   double distance = 0;
   for (std::size_t i = 0; i < s.size(); ++i) {
     const Eigen::Matrix3d change = first[i].R - second[i].R;
@@ -170,7 +167,8 @@ class SpanSearch {
   [[nodiscard]] bool lies_in_plane(const Quaterniond& frame) const {
     if (!span_.plane) return false;
     const Eigen::Vector3d out = frame.conjugate() * span_.plane->x.cross(span_.plane->y);
-    return std::abs(out.z()) < in_plane && (span_.round() || std::abs(out.x()) < in_plane);
+    return std::abs(out.z()) < plane_tolerance &&
+           (span_.round() || std::abs(out.x()) < plane_tolerance);
   }
 
   const RodSpan& span_;
@@ -187,8 +185,7 @@ bool is_pulled_straight(const RodSpan& span) {
   for (std::size_t i = 0; i + 1 < span.holds.size(); ++i) {
     const RodSpan::Hold& a = span.holds[i];
     const RodSpan::Hold& b = span.holds[i + 1];
-    constexpr double rounding = 1e-12;
-    if ((b.position - a.position).norm() >= (b.at - a.at) * (1 - rounding)) return true;
+    if ((b.position - a.position).norm() >= (b.at - a.at) * (1 - 1e-12)) return true;
   }
   return false;
 }
@@ -249,10 +246,8 @@ SpanSearchResult search_without_frames(const RodSpan& span, double tolerance,
 }  // namespace
 
 void check_load(const RodSpan& span) {
-  constexpr double largest_load = 1e6;
   const double load = total_load(span) / least_bending_stiffness(span);
-  require(load <= largest_load, "solve_exact", "sum of weight and loads, divided by EI/l^2", load,
-          "<= 1e6");
+  require(load <= 1e6, "solve_exact", "sum of weight and loads, divided by EI/l^2", load, "<= 1e6");
 }
 
 double resolving_interval(const RodSpan& span, double force) {

@@ -273,8 +273,7 @@ class TipScan {
   /// Finds a root of the residual or of its slope between two tip angles at which its signs differ,
   /// by the secant method with a bracket (Illinois).
   ScanPoint root(double ScanPoint::*value, ScanPoint a, ScanPoint b) {
-    constexpr int most_iterations = 200;
-    for (int i = 0; i < most_iterations && b.*value != 0; ++i) {
+    for (int i = 0; i < 200 && b.*value != 0; ++i) {
       const double start = b.start - b.*value * (b.start - a.start) / (b.*value - a.*value);
       if (start == a.start || start == b.start) break;
       const ScanPoint next = shooter_.point(start);
@@ -292,8 +291,7 @@ class TipScan {
   /// Adds a root, unless its shot failed, which TipShooter counts, or the winding number jumps
   /// there.
   void add(const ScanPoint& root) {
-    constexpr double largest_residual = 5e-9;
-    if (std::abs(root.residual) < largest_residual) roots_.push_back(root);
+    if (std::abs(root.residual) < 5e-9) roots_.push_back(root);
   }
 
   TipShooter& shooter_;
@@ -308,10 +306,8 @@ bool tip_can_be_scanned(const RodSpan& span) {
       span.parts.size() != 1 || !part.section.slope.isZero(0) || part.section.stretch > 0) {
     return false;
   }
-  constexpr double largest_parallel_load = 4e5;
-  constexpr double largest_nonparallel_load = 60;
   const TipShooter shooter(span, 0, Deadline());
-  return shooter.load() <= (shooter.parallel() ? largest_parallel_load : largest_nonparallel_load);
+  return shooter.load() <= (shooter.parallel() ? 4e5 : 60);
 }
 
 SpanSearchResult scan_tip(const RodSpan& span, double tolerance, const Deadline& deadline) {

@@ -273,12 +273,11 @@ class DiscreteRod {
 
   /// Rotates the frames a little, so that no symmetry keeps the rod at a saddle.
   void perturb_frames() {
-    constexpr double perturbation_angle = 1e-3;  // [rad]
     Eigen::Matrix3Xd spins = Eigen::Matrix3Xd::Zero(3, std::ssize(q_));
     for (Eigen::Index i = 0; i < mesh_.intervals(); ++i) {
       const double x = static_cast<double>(i) / static_cast<double>(mesh_.intervals());
       const Eigen::Vector3d turn(std::sin(3 * x + 1), std::cos(2 * x), std::sin(2 * x + 1));
-      spins.col(i) = perturbation_angle * basis(i).axes * turn;
+      spins.col(i) = 1e-3 * basis(i).axes * turn;
     }
     rotate_frames(std::vector<Quaterniond>(q_), spins);
   }
@@ -361,9 +360,7 @@ std::optional<RodStep> damped_newton_step(DiscreteRod& rod, double unit, double&
     const double allowed_energy = before + armijo_share * share * step->slope;
     if (rod.augmented_energy() <= allowed_energy + energy_rounding * (1 + std::abs(before))) break;
   }
-  constexpr int usual_halvings = 2;
-  shift = halvings > usual_halvings ? std::max(4 * shift, unit)
-                                    : std::max(shift / 4, least_shift * unit);
+  shift = halvings > 2 ? std::max(4 * shift, unit) : std::max(shift / 4, least_shift * unit);
   return step;
 }
 

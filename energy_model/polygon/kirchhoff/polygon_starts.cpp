@@ -24,9 +24,7 @@ Quaterniond base_frame(const RodSpan& span) {
 /// undetermined; d2 is used, so that the frame stays in the plane.
 Quaterniond rotated_to_tangent(const Quaterniond& frame, const Eigen::Vector3d& tangent) {
   const Eigen::Vector3d t = frame * Eigen::Vector3d::UnitZ();
-  constexpr double opposite_tolerance =
-      1e-9;  // difference of the cosine from -1 for opposite tangents
-  if (t.dot(tangent) < opposite_tolerance - 1) return frame * Quaterniond(0, 0, 1, 0);
+  if (t.dot(tangent) < 1e-9 - 1) return frame * Quaterniond(0, 0, 1, 0);
   return Quaterniond::FromTwoVectors(t, tangent) * frame;
 }
 
@@ -104,13 +102,12 @@ Frames rotated_along_force(const RodSpan& span, const RodMesh& mesh, Frames fram
 
 /// Rotates frames out of the plane, because shapes that lie in it may be unstable in space.
 void tilt_out_of_plane(const RodSpan& span, const RodMesh& mesh, Frames& frames) {
-  constexpr double out_of_plane_angle = 0.2;
   const double from = span.clamps.empty() ? 0 : span.clamps.front().at;
   const Eigen::Vector3d axis = base_frame(span) * Eigen::Vector3d(1, 0, 1);
   for (Eigen::Index i = 0; i < mesh.intervals(); ++i) {
     Quaterniond& q = frames[static_cast<std::size_t>(i)];
     const double x = (middle_of(mesh, i) - from) / span.length;
-    q = from_rotation_vector(out_of_plane_angle * std::sin(2 * x) * axis) * q;
+    q = from_rotation_vector(0.2 * std::sin(2 * x) * axis) * q;
   }
 }
 

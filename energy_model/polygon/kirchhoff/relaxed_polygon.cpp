@@ -59,8 +59,7 @@ PolygonMinima polygon_minima(const RodSpan& span, const RodMesh& mesh, const Dea
     }
   }
   minima.complete = !deadline.passed();
-  std::stable_sort(found.begin(), found.end(),
-                   [](const auto& a, const auto& b) { return a.energy < b.energy; });
+  std::ranges::stable_sort(found, {}, &RelaxedPolygon::energy);
   return minima;
 }
 

@@ -21,13 +21,10 @@ RodMesh make_mesh(const RodSpan& span, double longest, const std::vector<double>
   for (std::size_t i = 0; i + 1 < fixed.size(); ++i) {
     const double width = fixed[i + 1] - fixed[i];
     // A rod with slack between two grips has to bend, which one interval could not.
-    constexpr int least_parts = 8;
-    const auto next =
-        std::upper_bound(span.holds.begin(), span.holds.end(), fixed[i],
-                         [](double at, const RodSpan::Hold& hold) { return at < hold.at; });
+    const auto next = std::ranges::upper_bound(span.holds, fixed[i], {}, &RodSpan::Hold::at);
     double own = longest;
     if (next != span.holds.begin() && next != span.holds.end()) {
-      own = std::min(own, (next->at - (next - 1)->at) / least_parts);
+      own = std::min(own, (next->at - (next - 1)->at) / 8);
     }
     const int parts = static_cast<int>(std::ceil(width / own));
     for (int k = 1; k < parts; ++k) nodes.push_back(fixed[i] + width * k / parts);

@@ -12,8 +12,6 @@
 namespace dlo::energy_model {
 namespace {
 
-constexpr double same_arc_length = 1e-9;  // arc lengths nearer to each other are equal, in l
-
 /// Returns an arc length in units of l; one that is nearly at an end of the rod is moved there.
 double scaled_arc_length(double at, double length) {
   const double s = at / length;
@@ -66,10 +64,9 @@ std::optional<Plane> plane_of(const RodSpan& span) {
 /// Returns the plane across the second axis of the first frame if grips, forces and natural strains
 /// keep the span in it; else std::nullopt.
 std::optional<Plane> plane_across_d2(const RodSpan& span) {
-  constexpr double rounding = 1e-12;
   const Eigen::Vector3d normal = span.first_frame.col(1);
   for (const Eigen::Vector3d& direction : directions_of(span)) {
-    if (std::abs(normal.dot(direction)) > rounding) return std::nullopt;
+    if (std::abs(normal.dot(direction)) > 1e-12) return std::nullopt;
   }
   // If the polynomials of the other two strains vanish at all probes, they are zero.
   for (const Eigen::Vector3d& u : sample_natural_strains(span, 24)) {
@@ -157,8 +154,7 @@ void add_loads(const Problem& problem, RodSpan& span) {
     span.loads.push_back(
         {at, load.force / force_unit, load.torque / (force_unit * l), load.follows});
   }
-  std::stable_sort(span.loads.begin(), span.loads.end(),
-                   [](const auto& a, const auto& b) { return a.at < b.at; });
+  std::ranges::stable_sort(span.loads, {}, &RodSpan::Load::at);
 }
 
 RodSpan make_span(const Problem& problem, const std::vector<OrderedGrip>& grips, double begin,
@@ -183,14 +179,12 @@ Eigen::Matrix3d material_frame(const Problem& problem) {
 }  // namespace
 
 const RodSpan::Clamp* RodSpan::clamp_at(double s) const {
-  const auto found =
-      std::find_if(clamps.begin(), clamps.end(), [&](const Clamp& clamp) { return clamp.at == s; });
+  const auto found = std::ranges::find(clamps, s, &Clamp::at);
   return found == clamps.end() ? nullptr : &*found;
 }
 
 bool RodSpan::twisted() const {
-  return std::any_of(clamps.begin(), clamps.end(),
-                     [](const Clamp& clamp) { return clamp.frame.has_value(); });
+  return std::ranges::any_of(clamps, [](const Clamp& clamp) { return clamp.frame.has_value(); });
 }
 
 bool RodSpan::round() const {
@@ -200,8 +194,7 @@ bool RodSpan::round() const {
 }
 
 bool RodSpan::has_couples() const {
-  return std::any_of(loads.begin(), loads.end(),
-                     [](const Load& load) { return !load.couple.isZero(0); });
+  return std::ranges::any_of(loads, [](const Load& load) { return !load.couple.isZero(0); });
 }
 
 ClampFrames released_frames(const RodSpan& span) {
@@ -236,7 +229,6 @@ RodSpan whole_span(const Problem& problem) {
 }
 
 RodSpan whole_span_with_axes(const Problem& problem) {
-  constexpr double rounding = 1e-12;
   const bool material = has_material_directors(problem);
   RodSpan span = material ? whole_directed_span(problem) : whole_span(problem);
   span.has_potential = has_potential(problem);
@@ -246,11 +238,9 @@ RodSpan whole_span_with_axes(const Problem& problem) {
     return load.follows && !(load.force.head<2>().isZero(0) && load.couple.head<2>().isZero(0));
   };
   const bool asks_for_d1 = std::any_of(span.loads.begin(), span.loads.end(), across);
-  const bool leaves_d2 =
-      std::any_of(span.loads.begin(), span.loads.end(), [](const RodSpan::Load& load) {
-        return load.follows &&
-               (load.force.y() != 0 || load.couple.x() != 0 || load.couple.z() != 0);
-      });
+  const bool leaves_d2 = std::ranges::any_of(span.loads, [](const RodSpan::Load& load) {
+    return load.follows && (load.force.y() != 0 || load.couple.x() != 0 || load.couple.z() != 0);
+  });
   require(!asks_for_d1 || !span.clamps.empty(), "solve_exact",
           "number of clamps of a rod with a follower load along d1 or d2", 0, ">= 1");
   if (asks_for_d1) {
@@ -259,7 +249,7 @@ RodSpan whole_span_with_axes(const Problem& problem) {
     const Grip& clamp = problem.grips[*first_clamp(problem)];
     span.first_roll = clamp.frame ? clamp.frame->roll : 0;
     const Eigen::Vector3d d2 = span.first_frame.col(1);
-    const bool flat = span.plane && span.plane->x.cross(span.plane->y).cross(d2).norm() < rounding;
+    const bool flat = span.plane && span.plane->x.cross(span.plane->y).cross(d2).norm() < 1e-12;
     if (!flat) span.plane = plane_across_d2(span);
   }
   if (leaves_d2) span.plane.reset();
@@ -319,9 +309,7 @@ std::vector<RodSpan> cut_at_clamps(const Problem& problem) {
 }
 
 const RodSection& section_at(const RodSpan& span, double s) {
-  const auto after =
-      std::upper_bound(span.parts.begin(), span.parts.end(), s,
-                       [](double at, const RodSpan::Part& part) { return at < part.begin; });
+  const auto after = std::ranges::upper_bound(span.parts, s, {}, &RodSpan::Part::begin);
   return (after == span.parts.begin() ? after : after - 1)->section;
 }
 

@@ -25,11 +25,9 @@ constexpr double stage_tolerance = 1e-6;
 constexpr double rounding_step = 1e-7;
 /// Largest displacement of a coordinate in one step, in polygon lengths.
 constexpr double largest_step = 0.2;
-constexpr int most_escapes = 10;
 /// Initial step, in polygon lengths, below which slow steps with a modified Hessian are treated as
 /// an approach to a saddle.
 constexpr double first_escape_step = 1e-3;
-constexpr int most_slow_steps = 3;
 /// Largest residual force on a free point, divided by the forces that act [-]. The forces on a
 /// hundred points then balance within allowed_imbalance. The rounding error of positions times the
 /// largest stiffness is allowed as well (verify_result()). A polygon that is compressed between two
@@ -137,8 +135,7 @@ class PolygonDescent {
       iteration_.last_step = size;
       iteration_.slow_steps = 0;
     } else if (const bool at_rest = force.dot(step) <= rounding_energy();
-               at_rest ||
-               (size < iteration_.saddle_step && iteration_.slow_steps >= most_slow_steps)) {
+               at_rest || (size < iteration_.saddle_step && iteration_.slow_steps >= 3)) {
       // The polygon is in equilibrium, or approaches it slowly, but only omitted terms or damping
       // made the Hessian positive.
       iteration_.saddle_step = size / 4;
@@ -158,7 +155,7 @@ class PolygonDescent {
       iteration_.damping = 0;
       return std::nullopt;
     }
-    if (at_rest && iteration_.escapes++ == most_escapes) return SolveStatus::saddle;
+    if (at_rest && iteration_.escapes++ == 10) return SolveStatus::saddle;
     iteration_.damping = std::max(iteration_.damping, first_damping);
     for (; !factor(iteration_.damping); iteration_.damping *= 4) {
       if (iteration_.damping > most_damping) return SolveStatus::failed;
@@ -235,9 +232,8 @@ class PolygonDescent {
   void assemble(HessianTerms which) {
     hessian_terms_ = which;
     // A joint couples three points.
-    constexpr Eigen::Index points_per_joint = 3;
     const Eigen::Index unknowns = axes_ * free_;
-    hessian_.setZero(std::min(points_per_joint * axes_, unknowns), unknowns);
+    hessian_.setZero(std::min(3 * axes_, unknowns), unknowns);
     polygon_hessian(problem_, result_.points, which,
                     [&](Eigen::Index row, Eigen::Index column, const Eigen::Matrix3d& block) {
                       const Eigen::Index r = index_[static_cast<std::size_t>(row)];
@@ -288,14 +284,12 @@ class PolygonDescent {
   /// Leaves a saddle along the direction of its lowest curvature, found by inverse iteration with
   /// the damped factor.
   void move_along_lowest_mode() {
-    constexpr int iterations = 20;
-    constexpr double size = 1e-3;
     Eigen::VectorXd direction(axes_ * free_);
     for (Eigen::Index i = 0; i < direction.size(); ++i) {
       direction[i] = 1 + std::sin(static_cast<double>(i));  // a vector without symmetry
     }
-    for (int i = 0; i < iterations; ++i) direction = solver_.solve(direction).normalized();
-    direction *= size * length_ / direction.cwiseAbs().maxCoeff();
+    for (int i = 0; i < 20; ++i) direction = solver_.solve(direction).normalized();
+    direction *= 1e-3 * length_ / direction.cwiseAbs().maxCoeff();
     const Eigen::Matrix3Xd forward = moved(direction);
     const Eigen::Matrix3Xd back = moved(-direction);
     const double forward_energy = polygon_energy(problem_, forward, trial_gradient_);
@@ -352,11 +346,10 @@ PolygonResult solve_polygon(const PolygonProblem& problem, const Points& start,
   for (const HeldPoint& held : problem.held) result.points.col(held.point) = held.position;
 
   PolygonProblem stage = problem;
-  constexpr double stage_stiffening = 10;
   const double shortest = problem.rest_lengths.minCoeff();
   const double first = options.in_stages ? first_stretch_stiffness(problem, result.points)
                                          : problem.stretch_stiffness;
-  for (double c_c = first;; c_c *= stage_stiffening) {
+  for (double c_c = first;; c_c *= 10) {
     const bool last = c_c >= problem.stretch_stiffness;
     stage.stretch_stiffness = last ? problem.stretch_stiffness : c_c;
     for (std::size_t i = 0; i < problem.obstacles.size(); ++i) {

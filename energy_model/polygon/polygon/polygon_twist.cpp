@@ -22,8 +22,7 @@ struct TurningCorner : SegmentPair {
 
   TurningCorner(const Points& points, Eigen::Index i) : SegmentPair(points, i), sum(1 + u.dot(v)) {
     // A joint folded back on itself has no binormal.
-    constexpr double full_fold_tolerance = 1e-12;
-    q = sum > full_fold_tolerance ? Eigen::Vector3d(u.cross(v) / sum) : Eigen::Vector3d::Zero();
+    q = sum > 1e-12 ? Eigen::Vector3d(u.cross(v) / sum) : Eigen::Vector3d::Zero();
   }
 };
 

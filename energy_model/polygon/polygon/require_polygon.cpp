@@ -29,8 +29,7 @@ void require_twists(const PolygonProblem& problem) {
   require(problem.twists.empty() || problem.natural_turns.size() == 0, name, "number of twists",
           count, "0 with natural turns");
   const auto is_held = [&](Eigen::Index point) {
-    return std::any_of(problem.held.begin(), problem.held.end(),
-                       [point](const HeldPoint& held) { return held.point == point; });
+    return std::ranges::find(problem.held, point, &HeldPoint::point) != problem.held.end();
   };
   for (const PolygonTwist& twist : problem.twists) {
     for (const Eigen::Index segment : {twist.first_segment, twist.last_segment}) {

@@ -21,6 +21,11 @@ inline void require_positive(std::string_view function, std::string_view argumen
   require(value > 0 && std::isfinite(value), function, argument, value, "finite and > 0");
 }
 
+inline void require_not_negative(std::string_view function, std::string_view argument,
+                                 double value) {
+  require(value >= 0 && std::isfinite(value), function, argument, value, ">= 0 and finite");
+}
+
 /// Checks that a number or all components of an array are finite.
 /// @throws std::invalid_argument naming the number, or the norm of the array
 inline void require_finite(std::string_view function, std::string_view argument, double value) {
