@@ -44,12 +44,9 @@ void check_rod(const MovingRod& rod) {
   check(rod.problem, rod.inertia, simulate_name);
   require(rod.motions.size() <= rod.problem.grips.size(), simulate_name, "motions.size()",
           static_cast<double>(rod.motions.size()), "<= the number of grips");
-  const auto known = [](double x) { return x >= 0 && std::isfinite(x); };
-  require(known(rod.material_damping), simulate_name, "material_damping", rod.material_damping,
-          ">= 0 and finite");
-  require(known(rod.air_drag), simulate_name, "air_drag", rod.air_drag, ">= 0 and finite");
-  require(known(rod.quadratic_drag), simulate_name, "quadratic_drag", rod.quadratic_drag,
-          ">= 0 and finite");
+  require_not_negative(simulate_name, "material_damping", rod.material_damping);
+  require_not_negative(simulate_name, "air_drag", rod.air_drag);
+  require_not_negative(simulate_name, "quadratic_drag", rod.quadratic_drag);
   for (const double time : rod.breaks) {
     require_finite(simulate_name, "breaks", time);
   }
@@ -76,8 +73,7 @@ void check_options(std::span<const double> times, const DynamicsOptions& options
   require(options.terms > 0 && options.terms <= max_terms, simulate_name, "terms", options.terms,
           "1 to 128");
   require_positive(simulate_name, "tolerance", options.tolerance);
-  require(options.step >= 0 && std::isfinite(options.step), simulate_name, "step", options.step,
-          ">= 0 and finite");
+  require_not_negative(simulate_name, "step", options.step);
   require_positive(simulate_name, "contact_depth", options.contact_depth);
   require(options.time_limit > 0, simulate_name, "time_limit", options.time_limit, "> 0");
   for (std::size_t i = 0; i < times.size(); ++i) {
@@ -95,8 +91,7 @@ std::vector<std::vector<PointMass>> masses_by_span(const MovingRod& rod,
   for (const PointMass& mass : rod.inertia.point_masses) {
     for (std::size_t i = 0; i < spans.size(); ++i) {
       const double s = spans[i].s_of(mass.at, rod.problem.length);
-      constexpr double rounding = 1e-9;
-      if (s < -rounding || s > spans[i].span.length + rounding) continue;
+      if (s < -same_arc_length || s > spans[i].span.length + same_arc_length) continue;
       result[i].push_back(mass);
       break;
     }
@@ -160,23 +155,6 @@ double largest_part(const EnergyBalance& energy, const EnergyBalance& first) {
                    std::abs(energy.gravity - first.gravity), std::abs(energy.load - first.load)});
 }
 
-}  // namespace
-
-StartingShape straight_rod(const Eigen::Vector3d& direction) {
-  require_positive("straight_rod", "direction's length", direction.norm());
-  return [unit = direction.normalized().eval()](std::span<const double> arc_lengths) {
-    Samples samples;
-    samples.arc_length.assign(arc_lengths.begin(), arc_lengths.end());
-    const Eigen::Map<const Eigen::RowVectorXd> s(arc_lengths.data(), std::ssize(arc_lengths));
-    samples.points = unit * s;
-    samples.tangents = unit.replicate(1, s.size());
-    samples.curvature = Eigen::Matrix3Xd::Zero(3, s.size());
-    return samples;
-  };
-}
-
-namespace {
-
 /// Adds the rod's frames at the times that all spans have reached. The first frame, at the begin,
 /// is used only for the energy balance.
 void add_frames(const MovingRod& rod, const std::vector<PlacedSpan>& spans,
@@ -203,6 +181,19 @@ void add_frames(const MovingRod& rod, const std::vector<PlacedSpan>& spans,
 }
 
 }  // namespace
+
+StartingShape straight_rod(const Eigen::Vector3d& direction) {
+  require_positive("straight_rod", "direction's length", direction.norm());
+  return [unit = direction.normalized().eval()](std::span<const double> arc_lengths) {
+    Samples samples;
+    samples.arc_length.assign(arc_lengths.begin(), arc_lengths.end());
+    const Eigen::Map<const Eigen::RowVectorXd> s(arc_lengths.data(), std::ssize(arc_lengths));
+    samples.points = unit * s;
+    samples.tangents = unit.replicate(1, s.size());
+    samples.curvature = Eigen::Matrix3Xd::Zero(3, s.size());
+    return samples;
+  };
+}
 
 Dynamics simulate(const MovingRod& rod, const StartingShape& start, std::span<const double> times,
                   const DynamicsOptions& options) {

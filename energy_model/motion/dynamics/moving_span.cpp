@@ -35,9 +35,8 @@ bool leaves_plane(const SpanDrive& drive) {
   };
   return tilts(drive.spin) || tilts(drive.end_spin) || out(drive.grips.front().value) ||
          out(drive.grips.front().acceleration) ||
-         std::any_of(drive.grips.begin(), drive.grips.end(),
-                     [&](const VectorMotion& grip) { return out(grip.rate); }) ||
-         std::any_of(drive.obstacles.begin(), drive.obstacles.end(), moves_out);
+         std::ranges::any_of(drive.grips, out, &VectorMotion::rate) ||
+         std::ranges::any_of(drive.obstacles, moves_out);
 }
 
 /// Returns the drive at the same positions with zero velocities and accelerations.
@@ -88,9 +87,7 @@ class MovingSpan {
     }
   }
 
-  /// Simulates the span. @param masses  point masses that no other span carries
-  [[nodiscard]] SpanRun run(const StartingShape& start, const std::vector<PointMass>& masses,
-                            std::span<const double> times, const DynamicsOptions& options,
+  [[nodiscard]] SpanRun run(const SpanMotion& motion, const DynamicsOptions& options,
                             const Deadline& deadline) const {
     ContactLaw contact;
     contact.depth = options.contact_depth;
@@ -102,7 +99,7 @@ class MovingSpan {
     SpanRun result;
     long steps = 0;
     for (int repeat = 0; repeat < most_repeats; ++repeat) {
-      result = run_with(contact, start, masses, times, options, deadline);
+      result = run_with(contact, motion, options, deadline);
       steps += result.steps;
       result.steps = steps;
       if (result.status == SolveStatus::converged || result.left_plane) break;
@@ -166,10 +163,8 @@ class MovingSpan {
       result.end_spin = axes * end.angular_velocity * time_;
       const Eigen::Vector3d spin_rate = axes * end.angular_acceleration * (time_ * time_);
       const auto add_across = [&](const Eigen::Vector3d& held, bool of_d1) {
-        const Eigen::Vector3d across = turn * held;
-        const Eigen::Vector3d rate = result.end_spin.cross(across);
         result.across_end.push_back(
-            {{across, rate, spin_rate.cross(across) + result.end_spin.cross(rate)}, of_d1});
+            {rotating_vector(turn * held, result.end_spin, spin_rate), of_d1});
       };
       const Eigen::Vector3d& along = *placed_.span.end_direction;
       const Eigen::Matrix3d held = frame_along(along, Span::d1(along));
@@ -247,8 +242,7 @@ class MovingSpan {
         (residual(at.time + difference_step) - residual(at.time - difference_step)) /
         (2 * difference_step);
     Eigen::CompleteOrthogonalDecomposition<Eigen::MatrixXd> solver;
-    constexpr double zero_pivot_threshold = 1e-9;
-    solver.setThreshold(zero_pivot_threshold);
+    solver.setThreshold(1e-9);
     return -solver.compute(matrix).solve(change).head(n);
   }
 
@@ -331,20 +325,18 @@ class MovingSpan {
   }
 
   /// Simulates with one contact law; ends when the rod enters a rigid obstacle too deeply.
-  [[nodiscard]] SpanRun run_with(const ContactLaw& contact, const StartingShape& start,
-                                 const std::vector<PointMass>& masses,
-                                 std::span<const double> times, const DynamicsOptions& options,
-                                 const Deadline& deadline) const {
+  [[nodiscard]] SpanRun run_with(const ContactLaw& contact, const SpanMotion& motion,
+                                 const DynamicsOptions& options, const Deadline& deadline) const {
     SpanRun result;
     Equilibrium resting;
-    resting.sample = start;
+    resting.sample = motion.start;
     const TangentField field = field_of(resting, placed_, length_);
     const Eigen::Vector3d first = field(Eigen::VectorXd::Zero(1)).tangents.col(0);
     Span span = placed_.span;
     if (span.has_material_directors() && !span.planar && !span.start_direction) {
-      span.principal_d1 = first_d1(start);
+      span.principal_d1 = first_d1(motion.start);
     }
-    SpanDynamics model(span, options.terms, first, inertia(masses), contact);
+    SpanDynamics model(span, options.terms, first, inertia(motion.masses), contact);
     const StartShape begin = start_shape_at(field, model.nodes());
     const bool starts_out_of_plane =
         begin.tangents.row(2).cwiseAbs().maxCoeff() > motion_plane_rounding ||
@@ -378,7 +370,7 @@ class MovingSpan {
     const auto expired = [&] { return deadline.passed() || left_plane || is_too_deep(); };
     const std::vector<double> breaks = span_breaks();
     auto next_break = std::upper_bound(breaks.begin(), breaks.end(), at.time);
-    for (const double seconds : times) {
+    for (const double seconds : motion.times) {
       const double time = seconds / time_;
       const auto is_due = [&](double at_break) {
         return at_break <= time || SpanIntegrator::same_instant(at_break, time);
@@ -414,8 +406,7 @@ class MovingSpan {
 
 SpanRun run_span(const MovingRod& rod, const PlacedSpan& placed, const SpanMotion& motion,
                  const DynamicsOptions& options, const Deadline& deadline) {
-  return MovingSpan(rod, placed, motion.begin)
-      .run(motion.start, motion.masses, motion.times, options, deadline);
+  return MovingSpan(rod, placed, motion.begin).run(motion, options, deadline);
 }
 
 }  // namespace dlo::energy_model

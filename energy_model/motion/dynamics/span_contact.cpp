@@ -51,9 +51,8 @@ void ContactGrid::find(std::size_t element, const Span::Obstacle& obstacle,
     }
     // The rod cannot reach the body within a length equal to the clearance; the factor accounts for
     // the polynomials, which are not exactly inextensible.
-    constexpr double safety_factor = 0.9;
-    j += std::max<Eigen::Index>(1, static_cast<Eigen::Index>(std::min(
-                                       safety_factor * clearance / spacings_[element], 1e6)));
+    j += std::max<Eigen::Index>(
+        1, static_cast<Eigen::Index>(std::min(0.9 * clearance / spacings_[element], 1e6)));
   }
 }
 

@@ -17,12 +17,13 @@ namespace {
 /// of the constant's square.
 constexpr double twist_relaxation_time = 1e-4;
 
-VectorMotion rotating_vector(const Eigen::Vector3d& director, const FrameSpins& spins) {
-  const Eigen::Vector3d rate = spins.end_velocity.cross(director);
-  return {director, rate, spins.end_acceleration.cross(director) + spins.end_velocity.cross(rate)};
-}
-
 }  // namespace
+
+VectorMotion rotating_vector(const Eigen::Vector3d& vector, const Eigen::Vector3d& spin,
+                             const Eigen::Vector3d& spin_rate) {
+  const Eigen::Vector3d rate = spin.cross(vector);
+  return {vector, rate, spin_rate.cross(vector) + spin.cross(rate)};
+}
 
 SpanDynamics::SpanDynamics(Span span, int terms, const Eigen::Vector3d& first, SpanInertia inertia,
                            const ContactLaw& contact)
@@ -105,8 +106,8 @@ void SpanDynamics::move(const SpanDrive& drive, const Eigen::Ref<const Eigen::Ve
   t_ = state_.t.bottomRows(nodes().size());
   t_rate_ = cross_rows(spins.velocities, t_);
   const Eigen::Matrix3d end = state_.end_frame();
-  end_d1_ = rotating_vector(end.col(0), spins);
-  end_tangent_ = rotating_vector(end.col(2), spins);
+  end_d1_ = rotating_vector(end.col(0), spins.end_velocity, spins.end_acceleration);
+  end_tangent_ = rotating_vector(end.col(2), spins.end_velocity, spins.end_acceleration);
   Eigen::MatrixXd tangents(t_.rows(), 9);
   tangents << t_, t_rate_,
       cross_rows(spins.accelerations, t_) + cross_rows(spins.velocities, t_rate_);

@@ -21,6 +21,11 @@ struct VectorMotion {
   Eigen::Vector3d acceleration = Eigen::Vector3d::Zero();
 };
 
+/// Returns the motion of a vector that rotates with an angular velocity and acceleration.
+[[nodiscard]] VectorMotion rotating_vector(const Eigen::Vector3d& vector,
+                                           const Eigen::Vector3d& spin,
+                                           const Eigen::Vector3d& spin_rate);
+
 /// A direction that rotates with the clamp at the end, and the director that stays normal to it.
 struct AcrossDirector {
   VectorMotion direction;

@@ -70,13 +70,11 @@ void SpanIntegrator::set_stage_rows(Eigen::Index i, double step, const PointMatr
 
 SpanIntegrator::Factor& SpanIntegrator::factor(const SpanInstant& at, double step, bool renew) {
   // Steps that differ only by rounding of the times share a factor.
-  constexpr double tolerance = 1e-9;
   auto found = std::find_if(factors_.begin(), factors_.end(), [&](const Factor& known) {
-    return std::abs(known.step - step) <= tolerance * step;
+    return std::abs(known.step - step) <= 1e-9 * step;
   });
   if (found == factors_.end()) {
-    constexpr std::size_t most_factors = 6;
-    if (factors_.size() == most_factors) factors_.erase(factors_.begin());
+    if (factors_.size() == 6) factors_.erase(factors_.begin());
     factors_.push_back({step, {}});
     found = factors_.end() - 1;
   } else if (!renew) {
@@ -211,10 +209,9 @@ std::string SpanIntegrator::project(SpanInstant& at) {
   const Eigen::LLT<Eigen::MatrixXd> mass(weight);
   const SpanDrive drive = drive_(before_break(at.time));
   const Eigen::VectorXd zero = Eigen::VectorXd::Zero(span_.size());
-  constexpr int most_projections = 30;
   constexpr double constraint_tolerance = 1e-13;
   double before = std::numeric_limits<double>::infinity();
-  for (int i = 0; i < most_projections; ++i) {
+  for (int i = 0; i < 30; ++i) {
     span_.move(drive, at.x, at.v, zero);
     const Eigen::MatrixX3d residuals = span_.constraint_residuals();
     const Eigen::MatrixXd jacobian = span_.jacobian();
@@ -240,7 +237,6 @@ std::string SpanIntegrator::project(SpanInstant& at) {
 std::string SpanIntegrator::equilibrate_roll(SpanInstant& at) {
   // Implicit Euler step from rest: unknowns with mass move by their acceleration times this.
   constexpr double squared_step = 1e-8;
-  constexpr int most_settling = 50;
   const Eigen::Index n = span_.size();
   const Eigen::Index m = span_.constraints();
   const SpanDrive drive = drive_(after_break(at.time));
@@ -248,7 +244,7 @@ std::string SpanIntegrator::equilibrate_roll(SpanInstant& at) {
   const Eigen::VectorXd begin = at.x;
   Eigen::VectorXd multipliers = Eigen::VectorXd::Zero(m);
   double before = std::numeric_limits<double>::infinity();
-  for (int i = 0; i < most_settling; ++i) {
+  for (int i = 0; i < 50; ++i) {
     span_.move(drive, at.x, zero, (at.x - begin) / squared_step);
     Eigen::MatrixXd matrix = Eigen::MatrixXd::Zero(n + m, n + m);
     matrix.topLeftCorner(n, n) = span_.mass_matrix() / squared_step + span_.stiffness(multipliers);

@@ -15,9 +15,8 @@ namespace {
 /// may vanish to first order: the end of a straight rod cannot move along it.
 Eigen::MatrixXd null_space_basis(const Eigen::MatrixXd& jacobian) {
   if (jacobian.rows() == 0) return Eigen::MatrixXd::Identity(jacobian.cols(), jacobian.cols());
-  constexpr double of_first_order = 1e-9;
   Eigen::ColPivHouseholderQR<Eigen::MatrixXd> qr;
-  qr.setThreshold(of_first_order);
+  qr.setThreshold(1e-9);
   qr.compute(jacobian.transpose());
   const Eigen::MatrixXd Q = qr.householderQ();
   return Q.rightCols(jacobian.cols() - qr.rank());
@@ -26,12 +25,11 @@ Eigen::MatrixXd null_space_basis(const Eigen::MatrixXd& jacobian) {
 /// Separates modes of equal frequency, which are determined only up to a rotation, by their
 /// movement along the axis.
 void separate_equal_frequencies(SpanModes& modes, const Eigen::MatrixXd& outside) {
-  constexpr double tolerance = 1e-7;
   const Eigen::Index count = modes.lambdas.size();
   for (Eigen::Index begin = 0; begin < count;) {
     Eigen::Index end = begin + 1;
     while (end < count &&
-           modes.lambdas[end] - modes.lambdas[begin] <= tolerance * std::abs(modes.lambdas[end])) {
+           modes.lambdas[end] - modes.lambdas[begin] <= 1e-7 * std::abs(modes.lambdas[end])) {
       ++end;
     }
     if (end - begin > 1) {
@@ -57,8 +55,7 @@ SpanModes span_modes(const Eigen::MatrixXd& hessian, const Eigen::MatrixXd& jaco
   // computed most accurately.
   double shift = 1 / free_mass.trace();
   Eigen::LLT<Eigen::MatrixXd> factor;
-  constexpr int most_shifts = 40;
-  for (int i = 0; i < most_shifts; ++i, shift *= 8) {
+  for (int i = 0; i < 40; ++i, shift *= 8) {
     factor.compute(stiffness + shift * free_mass);
     if (factor.info() == Eigen::Success) break;
   }
@@ -69,11 +66,9 @@ SpanModes span_modes(const Eigen::MatrixXd& hessian, const Eigen::MatrixXd& jaco
   const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> solver(inverse);
   const Eigen::VectorXd& values = solver.eigenvalues();  // ascending
   // Directions without inertia follow instantaneously and have no mode.
-  constexpr double without_inertia = 1e-13;
   Eigen::Index found = 0;
   const Eigen::Index size = values.size();
-  while (found < std::min(count, size) &&
-         values[size - 1 - found] > without_inertia * values[size - 1]) {
+  while (found < std::min(count, size) && values[size - 1 - found] > 1e-13 * values[size - 1]) {
     ++found;
   }
   modes.lambdas = values.tail(found).reverse().cwiseInverse().array() - shift;
@@ -119,16 +114,14 @@ Eigen::MatrixXd mass_matrix(const SpanPointOperator& reach, const Eigen::VectorX
 }
 
 void check(const Problem& problem, const Inertia& inertia, std::string_view function) {
-  const auto known = [](double mass) { return mass >= 0 && std::isfinite(mass); };
-  require(known(inertia.mass_per_length), function, "mass_per_length", inertia.mass_per_length,
-          ">= 0 and finite");
+  require_not_negative(function, "mass_per_length", inertia.mass_per_length);
   require(inertia.of_sections.size() == problem.sections.size(), function, "of_sections.size()",
           static_cast<double>(inertia.of_sections.size()), "the number of sections");
   for (const double mass : inertia.of_sections) {
-    require(known(mass), function, "of_sections", mass, ">= 0 and finite");
+    require_not_negative(function, "of_sections", mass);
   }
   for (const PointMass& point : inertia.point_masses) {
-    require(known(point.mass), function, "point_masses", point.mass, ">= 0 and finite");
+    require_not_negative(function, "point_masses", point.mass);
     require(point.at >= 0 && point.at <= problem.length, function, "arc length of a point mass",
             point.at, "on the rod");
   }

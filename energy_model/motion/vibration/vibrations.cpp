@@ -115,9 +115,7 @@ class RodVibrations {
         result.push_back(mode(span, k));
       }
     }
-    std::stable_sort(result.begin(), result.end(), [](const auto& a, const auto& b) {
-      return a.omega_squared < b.omega_squared;
-    });
+    std::ranges::stable_sort(result, {}, &VibrationMode::omega_squared);
     if (result.size() > static_cast<std::size_t>(count_)) {
       result.resize(static_cast<std::size_t>(count_));
     }
@@ -254,11 +252,10 @@ constexpr double straight_rounding = 1e-9;
 /// Returns the problem with a small slack between its grips, which is required of problems. A
 /// straight rod does not depend on it.
 Problem with_slack(const Problem& problem) {
-  constexpr double slack = 1e-8;
   Problem result = problem;
   for (Grip& grip : result.grips) {
     grip.position = problem.grips.front().position +
-                    (1 - slack) * (grip.position - problem.grips.front().position);
+                    (1 - 1e-8) * (grip.position - problem.grips.front().position);
   }
   return result;
 }
