@@ -231,7 +231,7 @@ double ImplicitStep::search(const Rod& rod, bool gripper_moves) {
 
 void ImplicitStep::set_held_movements(const Rod& rod) {
   movement_.setZero();
-  for_each_held_point(rod, [this](const Grip& grip, Eigen::Index k) {
+  for_each_grip_point(rod, GripHold::rigid, [this](const Grip& grip, Eigen::Index k) {
     const Eigen::Index i = grip.first_point + k;
     movement_.col(i) = grip.targets.col(k) - points_.col(i);
   });
@@ -272,7 +272,7 @@ StepResult ImplicitStep::step(const Rod& rod) {
     energy_known_ = true;
     if (!gripper_moves) break;
   }
-  for_each_held_point(rod, [this](const Grip& grip, Eigen::Index k) {
+  for_each_grip_point(rod, GripHold::rigid, [this](const Grip& grip, Eigen::Index k) {
     points_.col(grip.first_point + k) = grip.targets.col(k);
   });
   movement_ = points_ - start_;

@@ -93,8 +93,7 @@ void BatchBlock::update_rounding(std::size_t rod) {
 void BatchBlock::set_active(std::size_t rod, bool active) { active_.lane[rod] = active ? 1 : 0; }
 
 bool BatchBlock::any_active() const {
-  return std::any_of(std::begin(active_.lane), std::end(active_.lane),
-                     [](double lane) { return lane != 0; });
+  return std::ranges::any_of(active_.lane, [](double lane) { return lane != 0; });
 }
 
 void BatchBlock::compute_forces() {

@@ -6,7 +6,7 @@ namespace dlo::force_model {
 
 std::vector<char> free_points(const Rod& rod) {
   std::vector<char> is_free(static_cast<std::size_t>(rod.points()), 1);
-  for_each_held_point(rod, [&](const Grip& grip, Eigen::Index k) {
+  for_each_grip_point(rod, GripHold::rigid, [&](const Grip& grip, Eigen::Index k) {
     is_free[static_cast<std::size_t>(grip.first_point + k)] = 0;
   });
   return is_free;

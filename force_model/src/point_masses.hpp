@@ -9,11 +9,11 @@ namespace dlo::force_model {
 /// Returns 1 for points that no rigid grip holds, else 0.
 [[nodiscard]] std::vector<char> free_points(const Rod& rod);
 
-/// Calls action(grip, k) for each rigidly held point, the k-th of its grip.
+/// Calls action(grip, k) for each point that a grip holds in this way, the k-th of its grip.
 template <typename Action>
-void for_each_held_point(const Rod& rod, const Action& action) {
+void for_each_grip_point(const Rod& rod, GripHold hold, const Action& action) {
   for (const Grip& grip : rod.grips) {
-    if (grip.hold == GripHold::spring) continue;
+    if (grip.hold != hold) continue;
     for (Eigen::Index k = 0; k < grip.targets.cols(); ++k) action(grip, k);
   }
 }

@@ -83,7 +83,6 @@ bool RestSearch::is_at_rest(const EquilibriumCheck& check) const {
 }
 
 EquilibriumCheck RestSearch::measure(const MovingShape& shape) {
-  result_.residual_force = std::sqrt(shape.forces.colwise().squaredNorm().maxCoeff());
   EquilibriumCheck check = check_equilibrium(rod_, shape.points);
   neutral_modes_ = check.neutral_modes;
   result_.remaining_error = std::max(check.remaining_error, shape.momentum);

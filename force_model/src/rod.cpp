@@ -4,6 +4,7 @@
 #include <algorithm>
 
 #include "dlo/force_model/contraction.hpp"
+#include "point_masses.hpp"
 #include "require.hpp"
 #include "twisted_spans.hpp"
 
@@ -43,21 +44,16 @@ void check_twist(const Rod& rod) {
           "size of torsional stiffnesses", static_cast<double>(joints),
           "0 or the number of joints");
   Eigen::Index spans = 0;
-  const Grip* first = next_framed_grip(rod, nullptr);
-  const Grip* last = first;
-  while (last != nullptr) {
-    const Grip* next = next_framed_grip(rod, last);
-    if (next != nullptr) {
-      ++spans;
-      for (Eigen::Index i = last->first_point + 1; i <= next->first_point; ++i) {
-        require_positive("Rod", "torsional stiffness of a joint between two grips with d1",
-                         joints > 0 ? twist.stiffnesses[i - 1] : twist.stiffness);
-        require_positive("Rod", "bending stiffness of a joint between two grips with d1",
-                         bending_at(rod.bending, i).stiffness);
-      }
-    }
-    last = next;
-  }
+  for_each_twisted_span(
+      rod, [&](const TwistedSpan& span, const Grip& /*first*/, const Grip& /*last*/) {
+        ++spans;
+        for (Eigen::Index i = span.first_segment + 1; i <= span.last_segment; ++i) {
+          require_positive("Rod", "torsional stiffness of a joint between two grips with d1",
+                           joints > 0 ? twist.stiffnesses[i - 1] : twist.stiffness);
+          require_positive("Rod", "bending stiffness of a joint between two grips with d1",
+                           bending_at(rod.bending, i).stiffness);
+        }
+      });
   const auto angles = twist.angles.size();
   require(angles == 0 || angles == spans, "Rod", "size of twist angles",
           static_cast<double>(angles), "0 or the number of parts between grips with d1");
@@ -184,13 +180,10 @@ void total_forces(const Rod& rod, const Points& points, Eigen::Ref<Eigen::Matrix
     }
   }
   for (const Solid& solid : rod.solids) add_solid_forces(solid, points, forces);
-  for (const Grip& grip : rod.grips) {
-    if (grip.hold == GripHold::rigid) continue;
-    for (Eigen::Index k = 0; k < grip.targets.cols(); ++k) {
-      const Eigen::Index i = grip.first_point + k;
-      forces.col(i) += spring_force(grip.stiffness, grip.targets.col(k), points.col(i));
-    }
-  }
+  for_each_grip_point(rod, GripHold::spring, [&](const Grip& grip, Eigen::Index k) {
+    const Eigen::Index i = grip.first_point + k;
+    forces.col(i) += spring_force(grip.stiffness, grip.targets.col(k), points.col(i));
+  });
 }
 
 void grip_reactions(const Rod& rod, const Points& points, Eigen::Ref<Eigen::Matrix3Xd> forces,
@@ -242,13 +235,10 @@ RodEnergy energy(const Rod& rod, const Points& points) {
     }
   }
   for (const Solid& solid : rod.solids) energy.contact += solid_energy(solid, points);
-  for (const Grip& grip : rod.grips) {
-    if (grip.hold == GripHold::rigid) continue;
-    for (Eigen::Index k = 0; k < grip.targets.cols(); ++k) {
-      const Eigen::Vector3d offset = grip.targets.col(k) - points.col(grip.first_point + k);
-      energy.contact += grip.stiffness * offset.squaredNorm() / 2;
-    }
-  }
+  for_each_grip_point(rod, GripHold::spring, [&](const Grip& grip, Eigen::Index k) {
+    const Eigen::Vector3d offset = grip.targets.col(k) - points.col(grip.first_point + k);
+    energy.contact += grip.stiffness * offset.squaredNorm() / 2;
+  });
   for_each_twisted_span(rod,
                         [&](const TwistedSpan& span, const Grip& /*first*/, const Grip& /*last*/) {
                           energy.twist += twist_energy(span, points);

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "point_masses.hpp"
 #include "solid_samples.hpp"
 #include "twisted_spans.hpp"
 
@@ -13,8 +14,7 @@ constexpr int axes = 3;
 bool is_naturally_bent(const Rod& rod) { return rod.bending.natural_turns.size() > 0; }
 
 bool has_spring_grips(const Rod& rod) {
-  return std::any_of(rod.grips.begin(), rod.grips.end(),
-                     [](const Grip& grip) { return grip.hold == GripHold::spring; });
+  return std::ranges::find(rod.grips, GripHold::spring, &Grip::hold) != rod.grips.end();
 }
 
 std::ptrdiff_t round_up(std::ptrdiff_t size) {
@@ -32,8 +32,7 @@ RodBlock::RodBlock(std::span<const Rod> rods, bool lockstep, InstructionSet set)
       law_(rods.front().bending.law),
       natural_(std::any_of(rods.begin(), rods.end(), is_naturally_bent)),
       spring_grips_(std::any_of(rods.begin(), rods.end(), has_spring_grips)),
-      solids_(std::any_of(rods.begin(), rods.end(),
-                          [](const Rod& rod) { return !rod.solids.empty(); })),
+      solids_(std::ranges::any_of(rods, [](const Rod& rod) { return !rod.solids.empty(); })),
       plain_points_(axes, points_),
       plain_forces_(axes, points_) {
   // The distance between arrays is an odd number of cache lines, so that they do not share cache
@@ -105,12 +104,9 @@ void RodBlock::set_rod(std::size_t lane, const Rod& rod) {
     at(bend, k) = law_ == BendingLaw::hooke ? 2 * c / mean : c;
     at(natural, k) = natural_moment(rod.bending, i, mean);
   }
-  for (const Grip& grip : rod.grips) {
-    if (grip.hold == GripHold::spring) continue;
-    for (Eigen::Index k = 0; k < grip.targets.cols(); ++k) {
-      at(is_free, element(grip.first_point + k, lane)) = 0;
-    }
-  }
+  for_each_grip_point(rod, GripHold::rigid, [&](const Grip& grip, Eigen::Index k) {
+    at(is_free, element(grip.first_point + k, lane)) = 0;
+  });
 }
 
 void RodBlock::set_walls(std::span<const Rod> rods) {
@@ -170,14 +166,11 @@ void RodBlock::update_dimension(std::span<const Rod> rods) {
 void RodBlock::add_spring_grips(std::span<const Rod> rods) {
   for (std::size_t lane = 0; lane < rods.size(); ++lane) {
     const auto on_springs = [&](const auto& action) {
-      for (const Grip& grip : rods[lane].grips) {
-        if (grip.hold == GripHold::rigid) continue;
-        for (Eigen::Index k = 0; k < grip.targets.cols(); ++k) {
-          for (int axis = 0; axis < axes; ++axis) {
-            action(grip, axis, k, element(grip.first_point + k, lane));
-          }
+      for_each_grip_point(rods[lane], GripHold::spring, [&](const Grip& grip, Eigen::Index k) {
+        for (int axis = 0; axis < axes; ++axis) {
+          action(grip, axis, k, element(grip.first_point + k, lane));
         }
-      }
+      });
     };
     if (walls_.empty() && !solids_) {
       on_springs([this](const Grip&, int axis, Eigen::Index, std::ptrdiff_t e) {

@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "dlo/force_model/rod.hpp"
+#include "point_masses.hpp"
 #include "solid_samples.hpp"
 
 // Minus the derivatives of the forces by the points, term by term. `Stiffness` takes
@@ -143,13 +144,10 @@ void add_springs(const Rod& rod, const Eigen::Ref<const Eigen::Matrix3Xd>& point
       stiffness.add(push.point, push.point + 1, own * push.share * block);
     });
   }
-  for (const Grip& grip : rod.grips) {
-    if (grip.hold == GripHold::rigid) continue;
+  for_each_grip_point(rod, GripHold::spring, [&](const Grip& grip, Eigen::Index k) {
     const Eigen::Matrix3d block = grip.stiffness * Eigen::Matrix3d::Identity();
-    for (Eigen::Index k = 0; k < grip.targets.cols(); ++k) {
-      stiffness.add(grip.first_point + k, grip.first_point + k, block);
-    }
-  }
+    stiffness.add(grip.first_point + k, grip.first_point + k, block);
+  });
 }
 
 }  // namespace dlo::force_model

@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "dlo/force_model/step_size.hpp"
+#include "point_masses.hpp"
 #include "require.hpp"
 #include "stiffness_factor.hpp"
 #include "stiffness_terms.hpp"
@@ -22,12 +23,9 @@ constexpr double step_rounding_share = 1e-12;
 /// Returns the index of each point among the free ones, -1 for rigidly held points.
 std::vector<Eigen::Index> free_indices(const Rod& rod, Eigen::Index& count) {
   std::vector<Eigen::Index> indices(static_cast<std::size_t>(rod.points()), 0);
-  for (const Grip& grip : rod.grips) {
-    if (grip.hold == GripHold::spring) continue;
-    for (Eigen::Index k = 0; k < grip.targets.cols(); ++k) {
-      indices[static_cast<std::size_t>(grip.first_point + k)] = -1;
-    }
-  }
+  for_each_grip_point(rod, GripHold::rigid, [&](const Grip& grip, Eigen::Index k) {
+    indices[static_cast<std::size_t>(grip.first_point + k)] = -1;
+  });
   count = 0;
   for (Eigen::Index& index : indices) {
     if (index == 0) index = count++;

@@ -32,8 +32,7 @@ enum class RelaxStatus {
 struct [[nodiscard]] RelaxResult {
   RelaxStatus status = RelaxStatus::diverged;  ///< how it ended
   std::string message = "never ran";           ///< the status in words, with any neutral modes
-  long steps = 0;              ///< steps of this call; of implicit steps the linear solves
-  double residual_force = -1;  ///< largest force on a free point [N]; -1: never measured
+  long steps = 0;  ///< steps of this call; of implicit steps the linear solves
   /// RMS distance of the points from the rest shape [m]: a bound if at rest, else an estimate. If
   /// there is none, as at an unstable shape, it is the remaining momentum. -1: never measured.
   double remaining_error = -1;
