@@ -11,8 +11,8 @@
 namespace dlo::force_model {
 namespace {
 
-constexpr long steps_to_forced_measurement =
-    50'000;                       // steps before a measurement without signs of rest
+// Steps before a measurement without signs of rest.
+constexpr long steps_to_forced_measurement = 50'000;
 constexpr long clock_steps = 64;  // steps between readings of the clock (cost: one step)
 
 }  // namespace

@@ -12,8 +12,8 @@ struct RelaxOptions {
   double tolerance = 1e-7;
   long max_steps = 2'000'000;  ///< number of steps or linear solves after which the search ends
   double time_limit = std::numeric_limits<double>::infinity();  ///< largest computing time [s], > 0
-  bool (*interrupted)() =
-      nullptr;  ///< called at intervals of steps; true ends the search as time_limit does
+  /// Called at intervals of steps; true ends the search as time_limit does.
+  bool (*interrupted)() = nullptr;
 };
 
 /// Way in which a search for rest ended.
