@@ -161,14 +161,6 @@ Problem with_frozen_loads(const Problem& problem, const RodSpan& span, const Equ
   return dead;
 }
 
-Equilibrium start_failure(const Equilibrium& dead) {
-  Equilibrium result;
-  result.status = SolveStatus::failed;
-  result.message = "start under only the loads that have a potential: " + dead.message;
-  result.evaluations = dead.evaluations;
-  return result;
-}
-
 /// Returns an equilibrium of a rod with loads that have no potential. It is the continuation of the
 /// lowest equilibrium under the other loads as these loads grow from zero, or the one to which
 /// Newton's method converges from the options' start. It is `not_verified`, because without an
@@ -188,7 +180,13 @@ Equilibrium solve_without_potential(const Problem& problem, const ExactOptions& 
   const Equilibrium dead = solve_exact(
       base, {.tolerance = options.tolerance,
              .time_limit = std::max(deadline.remaining(), std::numeric_limits<double>::min())});
-  if (!dead.sample) return start_failure(dead);
+  if (!dead.sample) {
+    Equilibrium failed;
+    failed.status = SolveStatus::failed;
+    failed.message = "start under only the loads that have a potential: " + dead.message;
+    failed.evaluations = dead.evaluations;
+    return failed;
+  }
   SpanEquilibrium found =
       refine_span(scale_nonpotential_loads(span, 0), base, dead, options.tolerance, deadline);
   if (found.converged) {

@@ -31,7 +31,6 @@ Eigen::SparseMatrix<double> matrix_of(const Triplets& triplets, Eigen::Index row
                                       Eigen::Index columns) {
   Eigen::SparseMatrix<double> matrix(rows, columns);
   matrix.setFromTriplets(triplets.begin(), triplets.end());
-  matrix.makeCompressed();
   return matrix;
 }
 

@@ -17,8 +17,8 @@ constexpr double first_duration = 0.01;
 constexpr double shortest = 1e-8;              // duration of the shortest step
 constexpr double longest = 1e8;                // duration of the longest step
 constexpr double largest_flow_rotation = 0.4;  // largest rotation of a tangent in one step [rad]
-constexpr double small_flow_rotation =
-    0.1;  // rotation in a step below which the next step is longer [rad]
+// Rotation in a step below which the next step is longer [rad].
+constexpr double small_flow_rotation = 0.1;
 // Rotation in a step of at least settled_duration at which the flow ends [rad].
 constexpr double final_flow_rotation = 3e-3;
 constexpr double settled_duration = 0.1;  // several times the relaxation time of most modes

@@ -58,8 +58,8 @@ std::vector<RodState> states_by_curvature(const RodSpan& span, const Problem& pr
 /// Returns states of a whole rod: the moment is the sum of the actions of its grips.
 std::vector<RodState> states_by_balance(const RodSpan& span, const Problem& problem,
                                         const Equilibrium& shape, const RodMesh& mesh) {
-  constexpr Eigen::Index parts_per_interval =
-      8;  // parts per interval for the integration of moments
+  // Parts per interval for the integration of moments.
+  constexpr Eigen::Index parts_per_interval = 8;
   const Eigen::Index count = parts_per_interval * mesh.intervals();
   Eigen::VectorXd s(count + 1);
   for (Eigen::Index k = 0; k <= count; ++k) {

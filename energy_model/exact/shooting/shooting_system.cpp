@@ -11,9 +11,9 @@
 namespace dlo::energy_model {
 namespace {
 
-constexpr double largest_tangent_rotation =
-    0.5;  // largest rotation of a tangent in one Newton step [rad]
-// Largest step of a contact, divided by the distance to the next fixed node or contact.
+// Largest rotation of a tangent in one Newton step [rad].
+constexpr double largest_tangent_rotation = 0.5;
+// Largest step of a contact, divided by the distance of its neighbouring fixed nodes or contacts.
 constexpr double longest_share = 0.3;
 
 double unit_of_force(const RodSpan& span, const std::vector<RodState>& start) {

@@ -129,11 +129,9 @@ Equilibrium assemble(const Problem& problem, SolvedRod solved, double tolerance)
   const auto rod = std::make_shared<const SolvedRod>(std::move(solved));
   Equilibrium result;
   result.grips.resize(problem.grips.size());
-  SecondVariation stability{.negative = 0,
-                            .neutral = 0,
-                            .smallest = std::numeric_limits<double>::infinity(),
-                            .s = {},
-                            .spin = {}};
+  SecondVariation stability;
+  stability.negative = stability.neutral = 0;
+  stability.smallest = std::numeric_limits<double>::infinity();
   Energies energy;
   bool unjudged = false;  // whether couples act on a shape that leaves its plane
   for (std::size_t i = 0; i < rod->spans.size(); ++i) {

@@ -29,8 +29,8 @@ constexpr Eigen::Index most_intervals = 1000;
 constexpr int search_iterations = 30;
 constexpr double start_tolerance = 1e-6;  // local error of the integrator along a polygon
 constexpr double polygons_share = 0.5;    // share of the remaining time for relaxing polygons
-constexpr double largest_node_rotation =
-    0.3;  // largest rotation of a stress-free polygon at a node [rad]
+// Largest rotation of a stress-free polygon at a node [rad].
+constexpr double largest_node_rotation = 0.3;
 
 /// Whether two equilibria are equal. The frames of a round rod without twist are arbitrary, so that
 /// only its tangents are compared.

@@ -18,8 +18,8 @@ constexpr int most_integrations = 20000;  // number of shots after which no cell
 constexpr int deepest_cell = 6;           // maximum number of halvings of a cell of the scan
 // Allowed error of the cubic in a cell, divided by the residual there.
 constexpr double cell_tolerance = 0.02;
-constexpr double double_root_residual =
-    1e-11;  // residual of a double root: rounding error of a shot
+// Residual of a double root: rounding error of a shot.
+constexpr double double_root_residual = 1e-11;
 
 /// Tip angle of a shot, its residual at the clamp, and the derivative of the residual by the tip
 /// angle. The residual is the sine of half the error of the clamp's angle, which is zero at every

@@ -212,19 +212,15 @@ class ClosedRod {
   double force_unit_;
 };
 
-/// Whether the rod is intrinsically straight and its obstacles are rigid.
-bool can_confirm(const Problem& problem) {
-  const bool rigid =
-      std::none_of(problem.obstacles.begin(), problem.obstacles.end(),
-                   [](const Obstacle& obstacle) { return std::isfinite(obstacle.stiffness); });
-  return rigid && problem.natural_strains.empty();
-}
-
 }  // namespace
 
 std::optional<Equilibrium> confirm_contacts(const Problem& problem, const Equilibrium& shape,
                                             double tolerance, const Deadline& deadline) {
-  if (!can_confirm(problem) || !shape.sample || shape.grips.size() != problem.grips.size()) {
+  const bool rigid =
+      std::none_of(problem.obstacles.begin(), problem.obstacles.end(),
+                   [](const Obstacle& obstacle) { return std::isfinite(obstacle.stiffness); });
+  if (!rigid || !problem.natural_strains.empty() || !shape.sample ||
+      shape.grips.size() != problem.grips.size()) {
     return std::nullopt;
   }
   const std::optional<ContactStart> start = start_with_contacts(problem, shape, tolerance);

@@ -234,8 +234,8 @@ class RodVibrations {
   Eigen::Index count_;
   SpanWorkspace workspace_;
   std::vector<std::shared_ptr<const VibratingSpan>> spans_;
-  double largest_tangent_difference_ =
-      0;  // largest difference of a tangent's component from the known shape
+  // Largest difference of a tangent's component from the known shape.
+  double largest_tangent_difference_ = 0;
 };
 
 void check_options(const VibrationOptions& options) {

@@ -38,11 +38,6 @@ constexpr double required_gap_reduction = 0.25;
 constexpr double penalty_growth = 4;      // increase of a penalty in a round, as a factor
 constexpr double largest_penalty = 1e12;  // largest penalty divided by the initial one
 
-double joint_energy(const FrameJoint& joint, const Quaterniond& left, const Quaterniond& right) {
-  const Eigen::Vector3d excess = joint.excess(left.conjugate() * right);
-  return joint.h / 2 * excess.dot(joint.stiffness.cwiseProduct(excess));
-}
-
 /// Derivatives of a joint's energy by the spin w of its right frame minus that of its left one.
 /// With turn = (c, v) in quaternions, the first and second derivatives of v along constant spins
 /// w_l and w_r are
@@ -119,7 +114,9 @@ class DiscreteRod {
   [[nodiscard]] double energy() const {
     double energy = 0;
     for (const FrameJoint& joint : joints_) {
-      energy += joint_energy(joint, frame(joint.left), frame(joint.right));
+      const Eigen::Vector3d excess =
+          joint.excess(frame(joint.left).conjugate() * frame(joint.right));
+      energy += joint.h / 2 * excess.dot(joint.stiffness.cwiseProduct(excess));
     }
     for (Eigen::Index i = 0; i < mesh_.intervals(); ++i) {
       energy -= mesh_.width(i) * carried_force_.col(i).dot(tangent(i));

@@ -44,8 +44,8 @@ struct RodMesh {
   Eigen::Matrix3Xd couple;           ///< couple on each node
   Eigen::Matrix3Xd follower_load;    ///< force that follows the rod, along its d1, d2 and t
   Eigen::Matrix3Xd follower_couple;  ///< couple that follows the rod, along its d1, d2 and t
-  Eigen::Matrix3Xd
-      tangent_force;  ///< vector q on each node's tangent with the energy -q.t; initially zero
+  /// Vector q on each node's tangent with the energy -q.t; initially zero.
+  Eigen::Matrix3Xd tangent_force;
   Eigen::Matrix3Xd d1_force;  ///< vector q on each node's d1 with the energy -q.d1; initially zero
   std::vector<const RodSpan::Hold*> hold;  ///< grip of the span at each node; null: none
   std::vector<const RodSection*> section;  ///< section of the span in each interval

@@ -41,7 +41,7 @@ SurfaceState<T> surface_state(const Surface& surface, const RodSection& section,
   SurfaceState<T> on;
   const Matrix3<T> own = R.transpose();
   const Vector3<T> from = r - surface.centre.cast<T>();
-  const double curvature = surface.curvature();
+  const double curvature = 1 / surface.radius;
   if (curvature > 0) {
     const Vector3<T> outward = (curvature * surface.across).cast<T>() * from;
     on.normal = own * outward;

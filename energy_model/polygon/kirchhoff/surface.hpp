@@ -17,7 +17,6 @@ struct Surface {
   Eigen::Matrix3d across = Eigen::Matrix3d::Zero();         ///< P; zero for a plane
   double radius = std::numeric_limits<double>::infinity();  ///< infinite for a plane
 
-  [[nodiscard]] double curvature() const { return 1 / radius; }
   /// Returns the gap of a point, with derivatives.
   [[nodiscard]] obstacle::Gap gap(const Eigen::Vector3d& r) const;
 };

@@ -13,8 +13,6 @@
 namespace dlo::energy_model {
 namespace {
 
-using Points = Eigen::Ref<const Eigen::Matrix3Xd>;
-
 constexpr double epsilon = std::numeric_limits<double>::epsilon();
 /// Strain that the first, softest stage allows under the acting forces [-].
 constexpr double soft_strain = 0.01;

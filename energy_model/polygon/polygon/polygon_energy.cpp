@@ -6,8 +6,6 @@
 namespace dlo::energy_model {
 namespace {
 
-using Points = Eigen::Ref<const Eigen::Matrix3Xd>;
-
 /// Potential of a joint and its first two derivatives by h = sin^2(alpha/2) = |u - v|^2 / 4, with
 /// the directions u and v of the segments. Unlike alpha, h is smooth for aligned segments.
 struct Joint {
@@ -18,8 +16,8 @@ struct Joint {
 /// series 1 + 2/3 h + 8/15 h^2 + .., in which each coefficient is 2n / (2n + 1) of the previous
 /// one, and 2 h (1 - h) f' = 1 - (1 - 2 h) f.
 Joint linear_joint(double k, double h) {
-  constexpr double series_limit =
-      0.02;  // below it 1 - (1 - 2 h) f loses digits, and 10 terms are exact
+  // Below it 1 - (1 - 2 h) f loses digits, and 10 terms are exact.
+  constexpr double series_limit = 0.02;
   constexpr int terms = 10;
   const double half = std::atan2(std::sqrt(h), std::sqrt(1 - h));  // alpha / 2
   const double energy = 2 * k * half * half;

@@ -9,6 +9,9 @@
 
 namespace dlo::energy_model {
 
+/// Positions of all points of a polygon [m], 3 x (n+1).
+using Points = Eigen::Ref<const Eigen::Matrix3Xd>;
+
 /// Function that receives a 3 x 3 block of a Hessian that belongs to the points `row` and `column`.
 /// Blocks on both sides of the diagonal are passed. Some are passed more than once and have to be
 /// added up.
@@ -30,8 +33,7 @@ enum class HessianTerms {
 };
 
 /// Computes the Hessian of polygon_energy(), without the part of twist_columns().
-void polygon_hessian(const PolygonProblem& problem,
-                     const Eigen::Ref<const Eigen::Matrix3Xd>& points, HessianTerms which,
+void polygon_hessian(const PolygonProblem& problem, const Points& points, HessianTerms which,
                      const AddBlock& add);
 
 /// Angle beyond which the moment of a joint is constant [rad]: of a `hooke` joint as in the force
@@ -62,7 +64,7 @@ struct SegmentPair {
   Eigen::Vector3d u, v;  ///< unit vectors of the segment before and the segment after the point
   double a, b;           ///< lengths of the segments
 
-  SegmentPair(const Eigen::Ref<const Eigen::Matrix3Xd>& points, Eigen::Index i)
+  SegmentPair(const Points& points, Eigen::Index i)
       : u(points.col(i) - points.col(i - 1)),
         v(points.col(i + 1) - points.col(i)),
         a(u.norm()),
@@ -73,19 +75,16 @@ struct SegmentPair {
 };
 
 /// Returns the energy of all twists [J] and adds their gradient [N] to `gradient`.
-[[nodiscard]] double add_twist_energy(const PolygonProblem& problem,
-                                      const Eigen::Ref<const Eigen::Matrix3Xd>& points,
+[[nodiscard]] double add_twist_energy(const PolygonProblem& problem, const Points& points,
                                       Eigen::Ref<Eigen::Matrix3Xd> gradient);
 
 /// Adds the part M d2 theta of the Hessian, which couples neighbours. The other part is B B^T, with
 /// a column d theta / sqrt(C) of B for each twist (twist_columns()).
-void add_twist_hessian(const PolygonProblem& problem,
-                       const Eigen::Ref<const Eigen::Matrix3Xd>& points, const AddBlock& add);
+void add_twist_hessian(const PolygonProblem& problem, const Points& points, const AddBlock& add);
 
 /// Returns the matrix B of add_twist_hessian(): 3 (n+1) rows, the coordinates of each point
 /// consecutively, and a column for each twist [sqrt(N/m)].
-[[nodiscard]] Eigen::MatrixXd twist_columns(const PolygonProblem& problem,
-                                            const Eigen::Ref<const Eigen::Matrix3Xd>& points);
+[[nodiscard]] Eigen::MatrixXd twist_columns(const PolygonProblem& problem, const Points& points);
 
 /// Factors of H = A + B B^T + shift, with A symmetric and banded and B of few columns, computed in
 /// O(rows): L D L^T of A + shift by GSL, and S = 1 + B^T (A + shift)^-1 B. The bordered matrix
@@ -115,7 +114,7 @@ class PolygonFactor {
 
 /// Checks the arguments of solve_polygon().
 /// @throws std::invalid_argument naming the first number out of range
-void require_polygon(const PolygonProblem& problem, const Eigen::Ref<const Eigen::Matrix3Xd>& start,
+void require_polygon(const PolygonProblem& problem, const Points& start,
                      const PolygonOptions& options);
 
 /// Checks stiffnesses and natural turns of the joints of chains and polygons with n segments.

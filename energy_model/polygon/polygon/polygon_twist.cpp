@@ -8,8 +8,6 @@
 namespace dlo::energy_model {
 namespace {
 
-using Points = Eigen::Ref<const Eigen::Matrix3Xd>;
-
 Eigen::Vector3d unit_segment(const Points& points, Eigen::Index k) {
   return (points.col(k + 1) - points.col(k)).normalized();
 }

@@ -9,8 +9,6 @@
 namespace dlo::energy_model {
 namespace {
 
-using Points = Eigen::Ref<const Eigen::Matrix3Xd>;
-
 constexpr const char* name = "PolygonProblem";
 
 /// Checks that vectors have no z component, as polygons whose joints are bent at rest require.

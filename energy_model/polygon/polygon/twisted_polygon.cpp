@@ -73,8 +73,7 @@ class TwistHomotopy {
 
 }  // namespace
 
-PolygonResult twist_polygon(const PolygonProblem& problem,
-                            const Eigen::Ref<const Eigen::Matrix3Xd>& start,
+PolygonResult twist_polygon(const PolygonProblem& problem, const Points& start,
                             const PolygonOptions& options) {
   const Deadline deadline(options.time_limit);
   require_polygon(problem, start, options);

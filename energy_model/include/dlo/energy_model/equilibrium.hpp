@@ -38,8 +38,8 @@ struct ContactPart {
   double begin = 0;                       ///< arc length where contact begins [m]
   /// Arc length where contact ends [m]; equal to `begin` unless the kind is `lying`.
   double end = 0;
-  Eigen::Vector3d force =
-      Eigen::Vector3d::Zero();  ///< resultant force of the obstacle on the rod [N]
+  /// Resultant force of the obstacle on the rod [N].
+  Eigen::Vector3d force = Eigen::Vector3d::Zero();
   /// Moment of all forces of this contact about the point at `begin` [N m]; zero unless the kind is
   /// `lying`.
   Eigen::Vector3d moment = Eigen::Vector3d::Zero();

@@ -71,8 +71,8 @@ struct VibrationMode {
 
 /// Modes of a rod about an equilibrium with the lowest frequencies.
 struct [[nodiscard]] Vibrations {
-  SolveStatus status =
-      SolveStatus::not_run;           ///< converged: each mode's error is below the tolerance
+  /// `converged`: each mode's error is below the tolerance.
+  SolveStatus status = SolveStatus::not_run;
   std::string message = "never ran";  ///< the status in words
   int terms = 0;                      ///< coefficients of each element and strain component
   std::vector<VibrationMode> modes;   ///< by growing omega_squared
