@@ -47,9 +47,7 @@ SpanDynamics::SpanDynamics(Span span, int terms, const Eigen::Vector3d& first, S
     twist_inertia_.tail(frames_.columns())
         .setConstant(twist_relaxation_time * twist_relaxation_time);
   }
-  for (Eigen::Index f = 0; free_start && f < elastic_.size(); f += frames_.columns()) {
-    elastic_[f] = 0;
-  }
+  if (free_start) elastic_(Eigen::seq(0, Eigen::last, frames_.columns())).setZero();
   const std::vector<Element>& elements = nodes_.elements();
   const auto point_at = [&](double s) { return points_.begin(elements_before(elements, s)); };
   for (const Span::Hold& hold : span_.holds) {

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <limits>
 #include <numbers>
+#include <numeric>
 
 #include "base/deadline.hpp"
 #include "base/require.hpp"
@@ -87,13 +88,9 @@ Eigen::VectorXd start_from_moments(const ChainProblem& problem) {
   // An upright chain has no moment at all; a small rotation lets it find its buckled shape.
   if (turned < 1e-6 && total.dot(tangent) < 0) turns[1] = 1e-3;
   if (problem.natural_turns.size() > 0) turns.tail(n - 1) += problem.natural_turns;
-  Eigen::VectorXd angles(n);
-  double angle = problem.first_angle;
-  for (Eigen::Index i = 0; i < n; ++i) {
-    angle += turns[i];
-    angles[i] = angle;
-  }
-  return angles;
+  turns[0] += problem.first_angle;
+  std::partial_sum(turns.begin(), turns.end(), turns.begin());
+  return turns;
 }
 
 /// Directions in which the angles of a chain move.

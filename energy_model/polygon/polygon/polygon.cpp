@@ -359,23 +359,21 @@ PolygonResult solve_polygon(const PolygonProblem& problem, const Points& start,
     result.status = descent.run(last ? options.tolerance : stage_tolerance);
     result.message = to_string(result.status);
     const bool go_on = succeeded(result.status) || result.status == SolveStatus::saddle;
-    if (!last && go_on) continue;
-    // A softer stage may have failed; the result has to be evaluated for the problem itself.
-    stage.stretch_stiffness = problem.stretch_stiffness;
-    stage.obstacles = problem.obstacles;
-    PolygonDescent asked(stage, options, deadline, result);
-    asked.verify_result();
-    for (const PolygonTwist& twist : stage.twists) {
-      result.twists.push_back(polygon_twist_angle(twist, result.points));
-    }
-    result.grip_forces.resize(3, static_cast<Eigen::Index>(problem.held.size()));
-    stage.obstacles.clear();
-    Eigen::Matrix3Xd gradient(3, result.points.cols());
-    (void)polygon_energy(stage, result.points, gradient);
-    for (std::size_t i = 0; i < problem.held.size(); ++i) {
-      result.grip_forces.col(static_cast<Eigen::Index>(i)) = gradient.col(problem.held[i].point);
-    }
-    break;
+    if (last || !go_on) break;
+  }
+  // A softer stage may have failed; the result has to be evaluated for the problem itself.
+  stage.stretch_stiffness = problem.stretch_stiffness;
+  stage.obstacles = problem.obstacles;
+  PolygonDescent(stage, options, deadline, result).verify_result();
+  for (const PolygonTwist& twist : stage.twists) {
+    result.twists.push_back(polygon_twist_angle(twist, result.points));
+  }
+  result.grip_forces.resize(3, static_cast<Eigen::Index>(problem.held.size()));
+  stage.obstacles.clear();
+  Eigen::Matrix3Xd gradient(3, result.points.cols());
+  (void)polygon_energy(stage, result.points, gradient);
+  for (std::size_t i = 0; i < problem.held.size(); ++i) {
+    result.grip_forces.col(static_cast<Eigen::Index>(i)) = gradient.col(problem.held[i].point);
   }
   result.seconds = deadline.spent();
   return result;

@@ -1,7 +1,6 @@
 #include "dlo/energy_model/energy.hpp"
 
 #include <algorithm>
-#include <chrono>
 #include <cstdint>
 #include <string>
 #include <utility>
@@ -130,7 +129,6 @@ class EnergySolver::State {
 
   /// Solves a problem. @return equilibria; empty if From::last_shape_only does not lead to one
   std::vector<Equilibrium> solve(const Problem& problem, Request wanted, From from) {
-    const auto begin = std::chrono::steady_clock::now();
     const Deadline deadline(options_.time_limit);
     log_ = {};
     require_dead_loads(problem, "solve_energy");
@@ -150,8 +148,7 @@ class EnergySolver::State {
     std::vector<Equilibrium> result =
         solve_without_similar_obstacles(problem, placed, wanted, from, deadline);
     if (result.empty()) result = solve_placed(problem, placed, wanted, from, deadline);
-    const double seconds =
-        std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
+    const double seconds = deadline.spent();
     for (Equilibrium& equilibrium : result) {
       equilibrium.seconds = seconds;
       if (deadline.passed()) add_time_limit(equilibrium);
