@@ -4,7 +4,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include "base/found_equilibria.hpp"
 #include "base/lobatto_element.hpp"
 #include "base/spin.hpp"
 
@@ -352,13 +351,6 @@ class VariationProblem {
 };
 
 }  // namespace
-
-void judge(const SecondVariation& stability, Equilibrium& shape) {
-  shape.status = stability.stable() ? SolveStatus::converged : SolveStatus::saddle;
-  shape.message = to_string(shape.status);
-  shape.smallest_eigenvalue = stability.smallest;
-  shape.message += zero_modes_note(stability.neutral);
-}
 
 Eigen::Matrix3Xd SecondVariation::spin_at(const Eigen::VectorXd& at) const {
   Eigen::Matrix3Xd result(3, at.size());

@@ -5,7 +5,6 @@
 #include <limits>
 #include <vector>
 
-#include "dlo/energy_model/equilibrium.hpp"
 #include "kirchhoff/rod_mesh.hpp"
 #include "kirchhoff/rod_span.hpp"
 #include "shooting/constrained_pencil.hpp"
@@ -68,9 +67,5 @@ using SpanStates = std::function<std::vector<RodState>(const std::vector<double>
 [[nodiscard]] SecondVariation second_variation(const RodSpan& span, const RodMesh& mesh,
                                                const ClampFrames& frames, double force,
                                                const SpanStates& states);
-
-/// Writes the result into an equilibrium: `converged`, or `saddle` if it is unstable; the message
-/// states the zero modes.
-void judge(const SecondVariation& stability, Equilibrium& shape);
 
 }  // namespace dlo::energy_model

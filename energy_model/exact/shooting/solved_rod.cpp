@@ -141,11 +141,10 @@ Equilibrium assemble(const Problem& problem, SolvedRod solved, double tolerance)
     result.residual = std::max(result.residual, equilibrium.residual);
     if (!equilibrium.converged) {
       result.status = SolveStatus::failed;
-      result.message = equilibrium.message;
-      if (!rod->has_directors()) {
-        result.message = "the span that begins at " + std::to_string(span.begin * problem.length) +
-                         " m: " + result.message;
-      }
+      const std::string begin = std::to_string(span.begin * problem.length);
+      const std::string where =
+          rod->has_directors() ? "" : "the span that begins at " + begin + " m: ";
+      result.message = where + equilibrium.message;
       continue;
     }
     energy.bending += equilibrium.energy.bending;
@@ -170,7 +169,9 @@ Equilibrium assemble(const Problem& problem, SolvedRod solved, double tolerance)
   }
   result.energy = to_joules(problem, energy);
   add_loads_on_clamps(problem, result);
-  judge(stability, result);
+  result.status = stability.stable() ? SolveStatus::converged : SolveStatus::saddle;
+  result.message = to_string(result.status) + zero_modes_note(stability.neutral);
+  result.smallest_eigenvalue = stability.smallest;
   if (has_couples(problem)) result.message += planar_check_note;
   if (unjudged || !has_potential(problem)) {
     result.status = SolveStatus::not_verified;

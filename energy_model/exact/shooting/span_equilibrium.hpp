@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "dlo/energy_model/problem.hpp"
+#include "dlo/energy_model/equilibrium.hpp"
 #include "kirchhoff/rod_mesh.hpp"
 #include "kirchhoff/rod_span.hpp"
 #include "shooting/rod_flow.hpp"
