@@ -147,10 +147,6 @@ Eigen::Vector3d curvature_of(const RodSection& section, const NaturalStrain& nat
   return u[1] * state.R.col(0) - u[0] * state.R.col(1);
 }
 
-Eigen::Matrix3d stiffness_of(const RodSection& section, const Eigen::Matrix3d& R) {
-  return R * section.stiffness().asDiagonal() * R.transpose();
-}
-
 std::vector<Eigen::Matrix3d> frames_of(const std::vector<RodState>& states) {
   std::vector<Eigen::Matrix3d> frames;
   frames.reserve(states.size());

@@ -20,9 +20,6 @@ namespace dlo::energy_model {
 [[nodiscard]] Eigen::Vector3d curvature_of(const RodSection& section, const NaturalStrain& natural,
                                            double s, const RodState& state);
 
-/// Returns the stiffness in the axes of space, R K R^T.
-[[nodiscard]] Eigen::Matrix3d stiffness_of(const RodSection& section, const Eigen::Matrix3d& R);
-
 /// Returns the tangents of states, 3 x states.
 [[nodiscard]] Eigen::Matrix3Xd tangents_of(const std::vector<RodState>& states);
 [[nodiscard]] std::vector<Eigen::Matrix3d> frames_of(const std::vector<RodState>& states);

@@ -195,7 +195,8 @@ class VariationProblem {
     for (std::size_t q = 0; q < element_quadrature; ++q) {
       const RodState& state = inside[static_cast<std::size_t>(e) * element_quadrature + q];
       const double weight = h / 2 * element_weight[q];
-      const Eigen::Matrix3d stiffness = stiffness_of(section, state.R);
+      const Eigen::Matrix3d stiffness =
+          state.R * section.stiffness().asDiagonal() * state.R.transpose();
       const Eigen::Matrix3d moment = cross_matrix(state.m);
       const Eigen::Matrix3d outer = state.n * state.t().transpose();
       Eigen::Matrix3d force =
