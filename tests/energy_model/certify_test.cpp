@@ -52,17 +52,17 @@ TEST(Certify, UsesTheFactorAtTheShapeItself) {
   ASSERT_EQ(solution.status, SolveStatus::converged) << solution.message;
   SpanSolution alone = solution;
   alone.factor.reset();
-  certify(alone, span.total_load(), factors);
+  certify(alone, factors);
   for (const double away : {1e-8, 3e-5, 1e-2}) {
     SpanSolution beside = solution;
     beside.x[1] += away;
-    factors.factor_at(beside, *beside.at_x(), span.total_load());
+    factors.factor_at(beside, *beside.at_x());
     SpanSolution certified = solution;
     certified.factor = beside.factor;
-    certify(certified, span.total_load(), factors);
+    certify(certified, factors);
     EXPECT_EQ(certified.status, SolveStatus::converged) << certified.message;
     EXPECT_EQ(certified.smallest_eigenvalue, alone.smallest_eigenvalue);
-    EXPECT_EQ(certified.factor->distance(certified, 1), 0);
+    EXPECT_EQ(certified.factor->distance(certified), 0);
   }
 }
 
@@ -92,7 +92,7 @@ SpanSolution straight_upright_shape(SpanWorkspace& workspace) {
   const Span span = nearly_buckling();
   SpanSolution solution = std::move(solve_span(span, SpanOptions(), workspace).front());
   solution.factor.reset();
-  certify(solution, span.total_load(), workspace.factors());
+  certify(solution, workspace.factors());
   EXPECT_EQ(solution.status, SolveStatus::converged) << solution.message;
   EXPECT_LT(solution.smallest_eigenvalue, 0.02);
   EXPECT_GT(solution.smallest_eigenvalue, 1e-4);
@@ -104,13 +104,12 @@ SpanSolution straight_upright_shape(SpanWorkspace& workspace) {
 TEST(Certify, CallsAShapeWhoseNextStepIsNotSmallUndetermined) {
   SpanWorkspace workspace;
   const SpanSolution solution = straight_upright_shape(workspace);
-  const double load = solution.model->span().total_load();
   const Eigen::VectorXd soft =
       eigenvector_by_magnitude(solution.factor->system.reduced_hessian(), 0).normalized();
   for (const double away : {1e-9, 1e-6}) {
     SpanSolution moved = solution;
     moved.x += away * soft;
-    certify(moved, load, workspace.factors());
+    certify(moved, workspace.factors());
     EXPECT_NEAR(moved.next_step, away, 0.1 * away);
     EXPECT_LE(moved.residual, 1e-8);
     EXPECT_EQ(moved.status, away < 1e-8 ? SolveStatus::converged : SolveStatus::near_singular);
@@ -127,12 +126,12 @@ TEST(Certify, CallsASaddleWhoseNextStepIsNotSmallUndetermined) {
   SpanWorkspace workspace;
   const SpanSolution straight = straight_shape(span);
   SpanSolution saddle = straight;
-  certify(saddle, span.total_load(), workspace.factors());
+  certify(saddle, workspace.factors());
   EXPECT_EQ(saddle.status, SolveStatus::saddle) << saddle.message;
   SpanSolution moved = straight;
   moved.x +=
       1e-6 * eigenvector_by_magnitude(saddle.factor->system.reduced_hessian(), 0).normalized();
-  certify(moved, span.total_load(), workspace.factors());
+  certify(moved, workspace.factors());
   EXPECT_LE(moved.residual, 1e-8);
   EXPECT_LT(moved.smallest_eigenvalue, -1e-4);
   EXPECT_EQ(moved.status, SolveStatus::near_singular);
@@ -151,13 +150,12 @@ SpanSolution arch_at_rest(SpanWorkspace& workspace) {
 TEST(Certify, RejectsAResidualAboveItsLimit) {
   SpanWorkspace workspace;
   const SpanSolution solution = arch_at_rest(workspace);
-  const double load = solution.model->span().total_load();
-  const double scale = 1 + load + solution.multipliers.norm();
+  const double scale = solution.scale_of_forces();
   const Eigen::RowVectorXd force = solution.at_x()->jacobian.row(0);
   for (const double share : {1e-9, 1e-7}) {
     SpanSolution pulled = solution;
     pulled.multipliers[0] += share * scale / force.norm();
-    certify(pulled, load, workspace.factors());
+    certify(pulled, workspace.factors());
     EXPECT_NEAR(pulled.residual, share * scale, 0.1 * share * scale);
     EXPECT_EQ(pulled.status, share < 1e-8 ? SolveStatus::converged : SolveStatus::failed);
     if (share > 1e-8) EXPECT_EQ(pulled.message, "the residual of the returned shape is not small");
@@ -168,7 +166,7 @@ TEST(Certify, RejectsGripsThatPullWithoutBound) {
   SpanWorkspace workspace;
   SpanSolution solution = arch_at_rest(workspace);
   solution.multipliers[0] = 1e15;
-  certify(solution, solution.model->span().total_load(), workspace.factors());
+  certify(solution, workspace.factors());
   EXPECT_EQ(solution.status, SolveStatus::failed);
   EXPECT_EQ(solution.message, "the reactions of the grips are unbounded");
 }
@@ -177,17 +175,16 @@ TEST(Certify, RejectsGripsThatPullWithoutBound) {
 TEST(Certify, ClaimsNoMoreThanTheSearch) {
   SpanWorkspace workspace;
   const SpanSolution solution = arch_at_rest(workspace);
-  const double load = solution.model->span().total_load();
   for (const SolveStatus status :
        {SolveStatus::near_singular, SolveStatus::failed, SolveStatus::evaluation_limit}) {
     SpanSolution left = solution;
     left.status = status;
-    certify(left, load, workspace.factors());
+    certify(left, workspace.factors());
     EXPECT_EQ(left.status, status);
   }
   SpanSolution saddle = solution;
   saddle.status = SolveStatus::saddle;
-  certify(saddle, load, workspace.factors());
+  certify(saddle, workspace.factors());
   EXPECT_EQ(saddle.status, SolveStatus::converged);
 }
 
@@ -211,14 +208,14 @@ TEST(Certify, CallsNoShapeStableThatPassesTheMiddleOfAYieldingBody) {
   using obstacle::Body;
   constexpr double soft = 0.01;
   SpanSolution beside = straight_through(Body::cylinder({0.503, 0.05, 0}, {0, 0, 1}, 0.1), 0);
-  certify(beside, 1, workspace.factors());
+  certify(beside, workspace.factors());
   EXPECT_EQ(beside.status, SolveStatus::converged) << beside.message;
   SpanSolution through = straight_through(Body::cylinder({0.503, 0, 0}, {0, 0, 1}, 0.1), soft);
-  certify(through, 1, workspace.factors());
+  certify(through, workspace.factors());
   EXPECT_GT(through.smallest_eigenvalue, 0.01);
   EXPECT_EQ(through.status, SolveStatus::saddle);
   SpanSolution near = straight_through(Body::cylinder({0.503, 1e-3, 0}, {0, 0, 1}, 0.1), 1e-9);
-  certify(near, 1, workspace.factors());
+  certify(near, workspace.factors());
   EXPECT_EQ(near.status, SolveStatus::near_singular);
   EXPECT_EQ(near.neutral_directions, 1);
 }

@@ -55,8 +55,8 @@ double rounding_of(double scale) { return 8 * std::numeric_limits<double>::epsil
 /// Estimates the error of the coefficients along the mode nearest zero for a constant second
 /// variation: the remaining Newton step, plus rounding, truncation and kinks within elements,
 /// divided by the eigenvalue nearest to zero.
-double linear_error(const SpanSolution& solution, double load) {
-  const double scale = scale_of_forces(solution, load);
+double linear_error(const SpanSolution& solution) {
+  const double scale = solution.scale_of_forces();
   // The last coefficient contributes an angle of a_K / (2K); its effect on forces is smaller by
   // this factor again.
   const double K = solution.terms;
@@ -117,10 +117,10 @@ Eigen::VectorXd change_with_fewer_terms(const SpanSolution& solution, const Span
 /// resistance. That bound is far too large for a rod that is pulled taut or hangs as a line, where
 /// forces are large but also stiffen the rod.
 double measured_error(const SpanSolution& solution, const SpanPoint& point,
-                      const Eigen::VectorXd& next_step, double load) {
+                      const Eigen::VectorXd& next_step) {
   // Covers the rounding of another step, and coefficients that decrease by a tenth per two more.
   constexpr double safety_factor = 10;
-  const double scale = scale_of_forces(solution, load);
+  const double scale = solution.scale_of_forces();
   const double smallest = std::min(solution.eigenvalue_nearest_zero, 1.0);
   const double soft =
       (rounding_of(scale) * (1 - smallest) + misplaced_contact_error(solution)) / smallest;
@@ -225,19 +225,18 @@ EigenvalueDerivatives eigenvalue_derivatives(SpanSolution& solution, const SoftM
 
 /// Whether the second variation might change within `eta` so much that h exceeds its limit. False
 /// if a bound by the largest forces excludes it; true if the eigenvalue is unknown.
-bool may_be_at_fold(const SpanSolution& solution, double load, double eta) {
-  return !(eta * largest_third_derivative * scale_of_forces(solution, load) <=
+bool may_be_at_fold(const SpanSolution& solution, double eta) {
+  return !(eta * largest_third_derivative * solution.scale_of_forces() <=
            kantorovich_limit * solution.eigenvalue_nearest_zero);
 }
 
 class Certification {
  public:
-  Certification(SpanSolution& solution, double load, NewtonFactors& factors)
+  Certification(SpanSolution& solution, NewtonFactors& factors)
       : solution_(solution),
         model_(*solution.model),
-        load_(load),
         factors_(factors),
-        scale_(scale_of_forces(solution, load)),
+        scale_(solution.scale_of_forces()),
         obstacles_(model_.has_soft_obstacles() || !model_.span().contacts.empty()) {}
 
   void run() {
@@ -270,7 +269,7 @@ class Certification {
     ++solution_.evaluations;
     solution_.energy = point_->energy;
     gradient_ = point_->gradient - point_->jacobian.transpose() * solution_.multipliers;
-    if (!(solution_.multipliers.norm() <= largest_grip_force * (1 + load_))) {
+    if (!(solution_.multipliers.norm() <= largest_grip_force * (1 + model_.load()))) {
       solution_.fail("the reactions of the grips are unbounded");
       return false;
     }
@@ -288,7 +287,7 @@ class Certification {
 
   /// Computes Newton's step and the second variation at the shape.
   void factorise() {
-    factors_.factor_at(solution_, *point_, load_);
+    factors_.factor_at(solution_, *point_);
     NewtonSystem& system = solution_.factor->system;
     next_step_ = newton_step(system, *point_, gradient_);
     check_newton_step();
@@ -298,7 +297,7 @@ class Certification {
     solution_.smallest_eigenvalue = found_.smallest;
     solution_.eigenvalue_nearest_zero = found_.nearest_zero;
     solution_.neutral_directions = found_.neutral_directions;
-    eta_ = linear_error(solution_, load_);
+    eta_ = linear_error(solution_);
   }
 
   void check_newton_step() {
@@ -354,7 +353,7 @@ class Certification {
     bool at_fold = false;
     // If there are as many coefficients as constraints, no direction is left for a fold.
     const bool can_move = found_.zero < model_.size() - model_.constraints();
-    if (can_move && may_be_at_fold(solution_, load_, eta_)) {
+    if (can_move && may_be_at_fold(solution_, eta_)) {
       const SoftMode mode = soft_mode(solution_.factor->system, point_->jacobian, found_.zero);
       const EigenvalueDerivatives change = eigenvalue_derivatives(solution_, mode);
       const double kappa = std::abs(change.first) + std::abs(change.second) * eta_;
@@ -365,7 +364,7 @@ class Certification {
     }
     solution_.error = error_estimate(solution_, moved);
     if (!at_fold) {
-      const double measured = measured_error(solution_, *point_, next_step_, load_);
+      const double measured = measured_error(solution_, *point_, next_step_);
       solution_.error = std::min(solution_.error, moved / eta_ * measured);
     }
   }
@@ -382,7 +381,6 @@ class Certification {
 
   SpanSolution& solution_;
   const SpanEnergy& model_;
-  const double load_;
   NewtonFactors& factors_;
   const double scale_;  // scale of forces
   const bool obstacles_;
@@ -398,12 +396,12 @@ class Certification {
 
 }  // namespace
 
-void certify(SpanSolution& solution, double load, NewtonFactors& factors) {
+void certify(SpanSolution& solution, NewtonFactors& factors) {
   if (!solution.is_equilibrium() && solution.status != SolveStatus::near_singular) return;
-  Certification(solution, load, factors).run();
+  Certification(solution, factors).run();
 }
 
-void certify_out_of_plane(SpanSolution& solution, double load, NewtonFactors& factors) {
+void certify_out_of_plane(SpanSolution& solution, NewtonFactors& factors) {
   const Span& span = solution.model->span();
   // Only a rod that is pulled along its clamp can rotate freely, about that direction; such
   // problems are rare.
@@ -415,11 +413,11 @@ void certify_out_of_plane(SpanSolution& solution, double load, NewtonFactors& fa
     solution.rigid_body_modes =
         static_cast<int>(rigid_body_modes(span, solution.at_x()->tangents()).all());
   }
-  const double eta = linear_error(solution, load);
+  const double eta = linear_error(solution);
   // Newton's method determines no eigenvalue of a saddle in the plane. An eigenvalue up to
   // `zero_eigenvalue_limit` may belong to a fold by rounding alone.
-  if (solution.status == SolveStatus::near_singular || may_be_at_fold(solution, load, eta)) {
-    return certify(solution, load, factors);
+  if (solution.status == SolveStatus::near_singular || may_be_at_fold(solution, eta)) {
+    return certify(solution, factors);
   }
   if (!solution.is_equilibrium()) return;
   solution.error = error_estimate(solution, eta);

@@ -19,12 +19,11 @@ class NewtonFactors;
 /// does not become `converged`. A shape through the middle of a soft obstacle becomes a `saddle`,
 /// one very near to it `near_singular` (classify_middle_passage()). Unless the result is `failed`,
 /// the solution's factor on return is that at solution.x.
-/// @param load  weight plus loads, the scale of the residuals
-void certify(SpanSolution& solution, double load, NewtonFactors& factors);
+void certify(SpanSolution& solution, NewtonFactors& factors);
 
 /// Certifies a plain cantilever that Newton's method has just found, which has checked its step and
 /// its second variation in the plane. Only the sign of the second variation out of the plane is
 /// determined. A singular point, or a shape that may be at a fold, is passed to certify().
-void certify_out_of_plane(SpanSolution& solution, double load, NewtonFactors& factors);
+void certify_out_of_plane(SpanSolution& solution, NewtonFactors& factors);
 
 }  // namespace dlo::energy_model

@@ -178,11 +178,11 @@ double highest(const SpanShape& shape, const Span::Obstacle& obstacle, double fr
 
 class Contacts {
  public:
-  Contacts(const SpanSolution& solution, double load, Resolution resolution)
+  Contacts(const SpanSolution& solution, Resolution resolution)
       : solution_(solution),
         span_(solution.model->span()),
         shape_(solution.model->shape(solution.x)),
-        pull_(-tensile_tolerance * (1 + load + solution.multipliers.norm())),
+        pull_(-tensile_tolerance * solution.scale_of_forces()),
         resolution_(resolution),
         contacts_(span_.contacts) {}
 
@@ -409,8 +409,8 @@ Penetration judge_penetration(const Problem& problem, Equilibrium& equilibrium) 
 }
 
 std::optional<std::vector<Span::Contact>> updated_contacts(const SpanSolution& solution,
-                                                           double load, Resolution resolution) {
-  return Contacts(solution, load, resolution).updated();
+                                                           Resolution resolution) {
+  return Contacts(solution, resolution).updated();
 }
 
 }  // namespace dlo::energy_model

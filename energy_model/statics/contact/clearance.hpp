@@ -80,6 +80,6 @@ enum class Resolution {
 ///   become one or two points, contacts that meet are joined, and contacts are added or extended
 ///   where the rod is within an obstacle
 [[nodiscard]] std::optional<std::vector<Span::Contact>> updated_contacts(
-    const SpanSolution& solution, double load, Resolution resolution);
+    const SpanSolution& solution, Resolution resolution);
 
 }  // namespace dlo::energy_model

@@ -53,7 +53,7 @@ class NewtonIteration {
     const int most =
         options_.method == NewtonMethod::simplified ? most_simplified_steps : most_newton_steps;
     for (int step = 0; step < most && std::isfinite(residual_norm_); ++step) {
-      if (options_.deadline != nullptr && options_.deadline->passed()) {
+      if (options_.deadline.passed()) {
         solution_.residual = residual_norm_;
         return solution_.finish(SolveStatus::time_limit);
       }
@@ -90,10 +90,9 @@ class NewtonIteration {
   void move(double length);
   [[nodiscard]] bool natural_monotonicity_step();
 
-  [[nodiscard]] double scale() const { return scale_of_forces(solution_, options_.load); }
   /// Whether the residual may consist of rounding errors.
   [[nodiscard]] bool is_at_rounding() const {
-    return residual_norm_ <= rounding_residual * scale();
+    return residual_norm_ <= rounding_residual * solution_.scale_of_forces();
   }
   SpanSolution& solution_;
   const NewtonOptions& options_;
@@ -141,7 +140,7 @@ double NewtonIteration::residual() {
   buffers_.gradient = here.gradient;
   if (model_.constraints() == 0) return here.gradient.norm();
   buffers_.gradient.noalias() -= here.jacobian.transpose() * solution_.multipliers;
-  return std::hypot(buffers_.gradient.norm(), (1 + options_.load) * here.residual.norm());
+  return std::hypot(buffers_.gradient.norm(), (1 + model_.load()) * here.residual.norm());
 }
 
 NewtonIteration::Outcome NewtonIteration::advance() {
@@ -188,7 +187,8 @@ NewtonIteration::Outcome NewtonIteration::handle_accepted_step(double moved) {
   solution_.next_step = step_.step_norm();
   const bool borrowed = step_.is_borrowed();
   const bool continues = borrowed && options_.method != NewtonMethod::simplified;
-  const double small = std::max(rounding_residual, options_.step_tolerance) * scale();
+  const double small =
+      std::max(rounding_residual, options_.step_tolerance) * solution_.scale_of_forces();
   if (!continues && residual_norm_ <= small && solution_.next_step <= options_.step_tolerance) {
     if (borrowed) {
       // With the factor's own Hessian the error after the last step is far below the next step;
@@ -203,7 +203,7 @@ NewtonIteration::Outcome NewtonIteration::handle_accepted_step(double moved) {
   // definite.
   // A yielding obstacle that is touched or left changes the Hessian within any distance.
   const bool near =
-      moved * (1 + options_.load) <= factor_reuse_step && !model_.has_soft_obstacles();
+      moved * (1 + model_.load()) <= factor_reuse_step && !model_.has_soft_obstacles();
   const bool shrinks = solution_.next_step < fast_contraction * moved && model_.constraints() > 0;
   near || shrinks ? step_.reuse() : step_.discard_factor();
   return Outcome::continues;
@@ -213,7 +213,7 @@ void NewtonIteration::finish() {
   solution_.residual = residual_norm_;
   solution_.eigenvalue_nearest_zero =
       step_.is_minimum() ? step_.smallest_eigenvalue() : std::numeric_limits<double>::quiet_NaN();
-  if (!(solution_.multipliers.norm() <= largest_grip_force * (1 + options_.load))) {
+  if (!(solution_.multipliers.norm() <= largest_grip_force * (1 + model_.load()))) {
     return solution_.fail("Newton's method diverged to unbounded forces");
   }
   const bool minimum = step_.is_minimum() || model_.constraints() > 0;
@@ -247,10 +247,7 @@ bool NewtonIteration::natural_monotonicity_step() {
   // errors.
   const bool short_enough = moves <= largest_stagnation_step && is_at_rounding();
   const double least = short_enough ? first / 2 : least_part;
-  const auto out_of_time = [&] {
-    return options_.deadline != nullptr && options_.deadline->passed();
-  };
-  for (double part = first; part > least && !out_of_time(); part /= 4) {
+  for (double part = first; part > least && !options_.deadline.passed(); part /= 4) {
     buffers_.step = buffers_.first_step;
     move(part);
     residual_norm_ = evaluated_residual();

@@ -18,27 +18,21 @@ struct NewtonFactor {
   Eigen::VectorXd x, multipliers;  ///< the point
   double scale = 1;                ///< scale of forces there, by which multipliers are divided
 
-  /// Returns the distance of a solution from the point: unknowns, and multipliers divided by a
-  /// scale of forces.
-  [[nodiscard]] double distance(const SpanSolution& solution, double forces) const {
-    return (solution.x - x).norm() + (solution.multipliers - multipliers).norm() / forces;
+  /// Returns the distance of a solution from the point: unknowns, and multipliers divided by the
+  /// solution's scale of forces.
+  [[nodiscard]] double distance(const SpanSolution& solution) const {
+    return (solution.x - x).norm() +
+           (solution.multipliers - multipliers).norm() / solution.scale_of_forces();
   }
 };
-
-/// Returns the scale of forces. It includes the multipliers, as grips may pull harder than weight
-/// and loads.
-[[nodiscard]] inline double scale_of_forces(const SpanSolution& solution, double load) {
-  return 1 + load + solution.multipliers.norm();
-}
 
 /// Makes factors. Buffers are reused once nobody holds their factor any more.
 class NewtonFactors {
  public:
   /// Factors the second variation of E - mu . c with the constraints at the solution, and stores
   /// the result in solution.factor.
-  /// @param at    point of the model at solution.x
-  /// @param load  weight plus loads
-  void factor_at(SpanSolution& solution, SpanPoint& at, double load);
+  /// @param at  point of the model at solution.x
+  void factor_at(SpanSolution& solution, SpanPoint& at);
 
  private:
   Pool<NewtonFactor> factors_;
@@ -96,7 +90,6 @@ enum class NewtonMethod {
 };
 
 struct NewtonOptions {
-  double load = 0;  ///< weight plus loads, the scale of the residuals
   NewtonMethod method = NewtonMethod::newton;
   /// Length of the next step at which the iteration ends [rad], if the residual is at rounding or,
   /// divided by the scale of forces, at most this.
@@ -104,7 +97,7 @@ struct NewtonOptions {
   /// Factor of another shape for the first steps between grips; used if its numbers of unknowns and
   /// constraints are the same.
   std::shared_ptr<NewtonFactor> first_factor = nullptr;
-  const Deadline* deadline = nullptr;  ///< ends the iteration as `time_limit`; null: none
+  Deadline deadline{};  ///< ends the iteration as `time_limit`
 };
 
 /// Buffers of newton_solve(), kept from one call to the next.

@@ -20,7 +20,7 @@ constexpr double largest_share = 0.5;
 
 }  // namespace
 
-void NewtonFactors::factor_at(SpanSolution& solution, SpanPoint& at, double load) {
+void NewtonFactors::factor_at(SpanSolution& solution, SpanPoint& at) {
   solution.factor.reset();
   solution.model->hessian(at, solution.multipliers, hessian_);
   // Buffers of the same size are reused.
@@ -28,7 +28,7 @@ void NewtonFactors::factor_at(SpanSolution& solution, SpanPoint& at, double load
     return kept.system.has_size(hessian_.rows(), at.jacobian.rows());
   });
   solution.factor->system.compute(hessian_, at.jacobian);
-  solution.factor->scale = scale_of_forces(solution, load);
+  solution.factor->scale = solution.scale_of_forces();
   solution.factor->x = solution.x;
   solution.factor->multipliers = solution.multipliers;
 }
@@ -44,7 +44,7 @@ void NewtonStep::use_given_factor() {
 
 void NewtonStep::factor() {
   factor_.reset();
-  buffers_.factors.factor_at(solution_, *buffers_.here, options_.load);
+  buffers_.factors.factor_at(solution_, *buffers_.here);
   factor_ = solution_.factor;
   factor_point_ = FactorPoint::this_point;
   buffers_.broyden.clear();
@@ -142,8 +142,7 @@ double NewtonStep::smallest_eigenvalue() {
 double NewtonStep::norm_with_multipliers() const {
   const Eigen::Index m = solution_.model->constraints();
   if (m == 0) return step_norm();
-  return std::hypot(step_norm(),
-                    buffers_.step.tail(m).norm() / scale_of_forces(solution_, options_.load));
+  return std::hypot(step_norm(), buffers_.step.tail(m).norm() / solution_.scale_of_forces());
 }
 
 void BroydenSteps::update(const Eigen::VectorXd& last, Eigen::VectorXd& next) {

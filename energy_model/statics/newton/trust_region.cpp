@@ -95,6 +95,8 @@ Eigen::VectorXd boundary_step(ReducedHessian& hessian, const Eigen::VectorXd& gr
   return shorter;
 }
 
+/// Maximum number of steps of one minimisation, accepted or not.
+constexpr int most_iterations = 100;
 /// Radius below which a step changes the shape by less than rounding.
 constexpr double smallest_radius = 1e-10;
 
@@ -115,8 +117,8 @@ class TrustRegionDescent {
       return solution_.fail("no shape at the positions of the grips was found from this start");
     }
     double radius = options_.radius;
-    for (int i = 0; i < options_.max_iterations; ++i) {
-      if (options_.deadline != nullptr && options_.deadline->passed()) {
+    for (int i = 0; i < most_iterations; ++i) {
+      if (options_.deadline.passed()) {
         accept_point(here);
         return solution_.finish(SolveStatus::time_limit);
       }
@@ -167,7 +169,7 @@ class TrustRegionDescent {
     const std::optional<Eigen::VectorXd> p =
         trust_region_step(reduced_, projected_gradient_,
                           {.radius = radius,
-                           .gradient_tolerance = options_.gradient_tolerance * (1 + options_.load),
+                           .gradient_tolerance = handover_gradient * (1 + model_.load()),
                            .least_step = options_.nearest});
     if (!p) return std::nullopt;
     predicted_ = -(projected_gradient_.dot(*p) + p->dot(reduced_.matrix() * *p) / 2);
@@ -226,7 +228,7 @@ class AugmentedLagrangian {
     const Eigen::Index m = model_.constraints();
     mu_ = solution_.multipliers;
     if (mu_.size() != m) mu_.setZero(m);
-    kappa_ = std::max(100 * (1 + options_.load), 10 * options_.stiffness);
+    kappa_ = std::max(100 * (1 + model_.load()), 10 * options_.stiffness);
     evaluate();
     double last_residual = here_.residual.norm();
     for (int update = 0; update < most_updates; ++update) {
@@ -235,18 +237,15 @@ class AugmentedLagrangian {
       const double residual = here_.residual.norm();
       if (residual <= newton_handover_residual) return finish(SolveStatus::converged);
       if (residual > last_residual / 4)
-        kappa_ = std::min(1e7 * (1 + options_.load + options_.stiffness / 1e3), 10 * kappa_);
+        kappa_ = std::min(1e7 * (1 + model_.load() + options_.stiffness / 1e3), 10 * kappa_);
       last_residual = residual;
     }
-    if (out_of_time()) return finish(SolveStatus::time_limit);
+    if (options_.deadline.passed()) return finish(SolveStatus::time_limit);
     finish(SolveStatus::failed);
     solution_.fail("no shape at the positions of the grips was found from this start");
   }
 
  private:
-  [[nodiscard]] bool out_of_time() const {
-    return options_.deadline != nullptr && options_.deadline->passed();
-  }
   [[nodiscard]] Eigen::VectorXd forces() const { return mu_ - kappa_ * here_.residual; }
 
   void evaluate() {
@@ -262,8 +261,8 @@ class AugmentedLagrangian {
   [[nodiscard]] bool minimise(double precision) {
     evaluate();
     double radius = std::min(first_radius, radius_);
-    for (int i = 0; i < options_.max_iterations; ++i) {
-      if (out_of_time()) return false;
+    for (int i = 0; i < most_iterations; ++i) {
+      if (options_.deadline.passed()) return false;
       const Eigen::VectorXd nu = forces();
       slope_ = here_.gradient - here_.jacobian.transpose() * nu;
       model_.hessian(here_, nu, hessian_);
@@ -272,7 +271,7 @@ class AugmentedLagrangian {
       const std::optional<Eigen::VectorXd> step = trust_region_step(
           reduced_, slope_,
           {.radius = radius,
-           .gradient_tolerance = precision * 1e-3 * (1 + options_.load + nu.norm())});
+           .gradient_tolerance = precision * 1e-3 * (1 + model_.load() + nu.norm())});
       if (!step) return true;
       const double predicted = -(slope_.dot(*step) + step->dot(hessian_ * *step) / 2);
       const double before = value_;

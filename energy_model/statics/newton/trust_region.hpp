@@ -11,6 +11,11 @@
 
 namespace dlo::energy_model {
 
+/// Gradient norm, divided by 1 + load, at which a descent ends and Newton's method takes over: two
+/// Newton steps square it to below rounding, while a line search, which compares energies, would
+/// stall near the root of the rounding error.
+inline constexpr double handover_gradient = 1e-5;
+
 /// Constraint residual from which a descent starts, and the largest one that it leaves between
 /// steps.
 inline constexpr double largest_constraint_residual = 1e-5;
@@ -61,16 +66,12 @@ inline constexpr double first_radius = 1;
 inline constexpr double largest_radius = 8;
 
 struct TrustRegionOptions {
-  double load = 0;  ///< weight plus loads, the scale of the gradient
-  /// Tolerance of the projected gradient, divided by 1 + load; > 0. This, `nearest` and `radius`
-  /// are used by descend_in_trust_region() only.
-  double gradient_tolerance = 0;
   /// Length of Newton's step up to which a minimum is close enough for Newton's method; used if the
-  /// projected Hessian is positive definite.
+  /// projected Hessian is positive definite. This and `radius` are used by
+  /// descend_in_trust_region() only.
   double nearest = 0;
   double radius = first_radius;  ///< radius of the first step, in the unknowns; > 0
-  int max_iterations = 100;      ///< maximum number of steps, accepted or not, of one minimisation
-  const Deadline* deadline = nullptr;  ///< checked once per step; null: none
+  Deadline deadline{};           ///< checked once per step
   /// Largest stiffness of a taut segment between grips [EI/l^3]; used by
   /// descend_by_augmented_lagrangian() only.
   double stiffness = 0;
@@ -86,10 +87,10 @@ struct TrustRegionOptions {
 /// region's boundary (Moré and Sorensen), so that the descent does not end on a saddle even from a
 /// symmetric start.
 ///
-/// Status `converged` means that the projected gradient is below its tolerance and H has no
-/// eigenvalue below -`zero_eigenvalue_limit`, or that a minimum is within `nearest`. If the steps
-/// or the radius have ended before, the status is `roundoff_limited`. The multipliers are stored in
-/// the solution.
+/// Status `converged` means that the projected gradient is at most `handover_gradient` times 1 +
+/// load and H has no eigenvalue below -`zero_eigenvalue_limit`, or that a minimum is within
+/// `nearest`. If the steps or the radius have ended before, the status is `roundoff_limited`. The
+/// multipliers are stored in the solution.
 void descend_in_trust_region(SpanSolution& solution, const TrustRegionOptions& options);
 
 /// Descends from solution.x to a point near a minimum of the energy under the constraints c = 0,

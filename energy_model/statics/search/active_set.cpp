@@ -62,8 +62,7 @@ SpanSolution solve_near_known(const Span& span, const SpanOptions& options,
       fits ? model.fit(options.start.field(model.nodes())) : model.prolong(*known.model, known.x);
   // A part that becomes short has fewer multipliers.
   if (known.multipliers.size() == model.constraints()) solution.multipliers = known.multipliers;
-  newton_solve(solution, {.load = span.total_load(), .deadline = &options.deadline},
-               workspace.newton());
+  newton_solve(solution, {.deadline = options.deadline}, workspace.newton());
   return solution;
 }
 
@@ -95,13 +94,12 @@ SpanSolution ActiveSet::run(Span span, TangentField near, SpanSolution solution,
     if (!solution.is_equilibrium() && fix_contact_points(span)) solution = newton_from(span, near);
     if (!solution.is_equilibrium()) break;
     spent_ += free_boundary_newton(solution, options_.deadline, workspace_);
-    std::optional<std::vector<Span::Contact>> next =
-        updated_contacts(solution, load_, Resolution::coarse);
+    std::optional<std::vector<Span::Contact>> next = updated_contacts(solution, Resolution::coarse);
     if (!next && resolution == Resolution::coarse) return solution;
     if (!next) {
       solution = resolved(std::move(solution), span);
       if (!solution.is_equilibrium()) break;
-      next = updated_contacts(solution, load_, Resolution::resolved);
+      next = updated_contacts(solution, Resolution::resolved);
       if (!next && !meets_free_boundaries(solution)) break;
       if (!next) return solution;
     }
@@ -122,7 +120,7 @@ SpanSolution ActiveSet::newton_from(const Span& span, const TangentField& near) 
   SpanSolution solution = workspace_.empty_solution(span, terms);
   solution.x = solution.model->fit(near(solution.model->nodes()));
   const Eigen::VectorXd start = solution.x;
-  const NewtonOptions newton = {.load = load_, .deadline = &options_.deadline};
+  const NewtonOptions newton = {.deadline = options_.deadline};
   // Newton's method would return to the saddle, or to the plane, that a shape has left.
   const bool has_left =
       options_.start.approach == Approach::descend || span.planar != searched_.planar;
@@ -130,22 +128,20 @@ SpanSolution ActiveSet::newton_from(const Span& span, const TangentField& near) 
   if (!solution.is_equilibrium()) {
     solution.x = start;
     const bool may_skip_kinks = has_left && !span.soft_obstacles.empty();
-    descend_in_trust_region(solution, {.load = load_,
-                                       .gradient_tolerance = handover_gradient,
-                                       .radius = may_skip_kinks ? careful_radius : first_radius,
-                                       .deadline = &options_.deadline});
+    descend_in_trust_region(solution, {.radius = may_skip_kinks ? careful_radius : first_radius,
+                                       .deadline = options_.deadline});
     if (succeeded(solution.status)) newton_solve(solution, newton, workspace_.newton());
   }
   spent_ += std::exchange(solution.evaluations, 0);
   return solution;
 }
 
-int ActiveSet::terms_of_load(const Span& span) const {
+int ActiveSet::terms_of_load(const Span& span) {
   constexpr int least_count = 12;  // next to a kink
   double longest = 0;
   const std::vector<Element> elements = elements_of(span);
   for (const Element& element : elements) longest = std::max(longest, element.length);
-  const int count = std::max(least_count, first_terms(load_, longest));
+  const int count = std::max(least_count, first_terms(span.total_load(), longest));
   // Many elements are short and need fewer coefficients while contacts change.
   const int unknowns = count * static_cast<int>(elements.size()) * (span.planar ? 1 : 2);
   return unknowns > many_unknowns ? std::max(least_count, count / 2) : count;
@@ -177,7 +173,7 @@ SpanSolution ActiveSet::with_all_terms(SpanSolution solution) {
     const bool more = options_.terms == 0 && finer <= max_terms && is_within_truncation(solution);
     if (!more || options_.deadline.passed()) return solution;
     SpanSolution next = workspace_.with_terms(solution, finer);
-    newton_solve(next, {.load = load_, .deadline = &options_.deadline}, workspace_.newton());
+    newton_solve(next, {.deadline = options_.deadline}, workspace_.newton());
     if (!next.is_equilibrium()) return solution;
     solution = std::move(next);
     spent_ += free_boundary_newton(solution, options_.deadline, workspace_);

@@ -21,7 +21,6 @@ class ActiveSet {
       : searched_(searched),
         options_(options),
         workspace_(workspace),
-        load_(searched.total_load()),
         least_terms_(options.start.known.terms()) {}
 
   /// Solves from a guess of contacts and shape. The result is certified, and not_verified if the
@@ -39,7 +38,7 @@ class ActiveSet {
  private:
   /// Returns the number of coefficients of each element that resolves a shape under the span's
   /// load, or half of it if there are many elements.
-  [[nodiscard]] int terms_of_load(const Span& span) const;
+  [[nodiscard]] static int terms_of_load(const Span& span);
   [[nodiscard]] SpanSolution run(Span span, TangentField near, SpanSolution solution,
                                  Resolution resolution);
   [[nodiscard]] SpanSolution resolved(SpanSolution solution, Span& span);
@@ -51,7 +50,6 @@ class ActiveSet {
   const Span& searched_;
   const SpanOptions& options_;
   SpanWorkspace& workspace_;
-  double load_;
   int least_terms_;
   int spent_ = 0;
 };

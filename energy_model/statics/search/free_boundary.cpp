@@ -92,7 +92,7 @@ class FreeBoundaryNewton {
       ends_[i].move(span, displacement[static_cast<Eigen::Index>(i)]);
     }
     SpanSolution result = workspace_.empty_solution(span, solution_.terms);
-    NewtonOptions options = {.load = span.total_load(), .deadline = &deadline_};
+    NewtonOptions options = {.deadline = deadline_};
     if (result.model->elements() == solution_.model->elements()) {
       result.x = result.model->prolong(*solution_.model, solution_.x);
       result.multipliers = solution_.multipliers;

@@ -82,7 +82,6 @@ class TwistPath {
         workspace_(workspace),
         active_set_(span_, options, workspace),
         tolerance_(tolerance),
-        load_(span.total_load()),
         first_d1_(untwisted.end_d1) {
     Span twisted = in_space(untwisted.solution.model->span());
     twisted.twist = Span::Twist{stiffness, first_d1_};
@@ -175,7 +174,7 @@ class TwistPath {
     // rotate about a line without a change of energy.
     const double work = (torque(here_) + torque(next)) / 2 * turn;
     const double unit = here_.model->span().twist->stiffness / span_.length * turn * turn;
-    const double rounding = 1e-9 * (1 + load_ + std::abs(next.energy));
+    const double rounding = 1e-9 * (1 + next.model->load() + std::abs(next.energy));
     const double jump = std::abs(next.energy - here_.energy - work);
     if (!(jump <= branch_energy_tolerance * unit + rounding)) return std::nullopt;
     may_lengthen_step_ = jump <= smooth_energy_tolerance * unit + rounding;
@@ -194,10 +193,9 @@ class TwistPath {
   /// Runs Newton's method. @param how  simplified: uses the solution's own factor
   void newton(SpanSolution& solution, NewtonMethod how) {
     newton_solve(solution,
-                 {.load = load_,
-                  .method = how,
+                 {.method = how,
                   .first_factor = how == NewtonMethod::simplified ? solution.factor : nullptr,
-                  .deadline = &options_.deadline},
+                  .deadline = options_.deadline},
                  workspace_.newton());
   }
 
@@ -251,13 +249,13 @@ class TwistPath {
 
   /// Returns the distance of the solution from the point of its factor; infinity if there is no
   /// factor.
-  [[nodiscard]] double distance_of_factor(const SpanSolution& solution) const {
-    if (!solution.factor) return std::numeric_limits<double>::infinity();
-    return solution.factor->distance(solution, scale_of_forces(solution, load_));
+  [[nodiscard]] static double distance_of_factor(const SpanSolution& solution) {
+    return solution.factor ? solution.factor->distance(solution)
+                           : std::numeric_limits<double>::infinity();
   }
 
   void factor_at(SpanSolution& solution) {
-    workspace_.factors().factor_at(solution, *solution.at_x(), load_);
+    workspace_.factors().factor_at(solution, *solution.at_x());
   }
 
   /// Descends from a displaced shape to a stable one.
@@ -299,11 +297,9 @@ class TwistPath {
       next.evaluations = 0;
       if (direction) next.x += push * *direction;
       if (i % 2 == 0) {
-        descend_by_augmented_lagrangian(next, {.load = load_, .deadline = &options_.deadline});
+        descend_by_augmented_lagrangian(next, {.deadline = options_.deadline});
       } else {
-        descend_in_trust_region(next, {.load = load_,
-                                       .gradient_tolerance = handover_gradient,
-                                       .deadline = &options_.deadline});
+        descend_in_trust_region(next, {.deadline = options_.deadline});
         push *= 3;
       }
       if (succeeded(next.status)) newton(next, NewtonMethod::newton);
@@ -319,7 +315,6 @@ class TwistPath {
   SpanWorkspace& workspace_;
   ActiveSet active_set_;
   double tolerance_;
-  double load_;
   Eigen::Vector3d first_d1_;  // d1 of the untwisted end
   SpanSolution here_;
   double angle_ = 0;
@@ -392,8 +387,7 @@ SpanSolution twist_from(const TangentField& field, const EndFrame& frame, const 
     solution = workspace.empty_solution(twisted, terms);
     SpanEnergy& model = *solution.model;
     solution.x = model.with_twist(model.fit(field(model.nodes())), frame.twist);
-    newton_solve(solution, {.load = span.total_load(), .deadline = &options.deadline},
-                 workspace.newton());
+    newton_solve(solution, {.deadline = options.deadline}, workspace.newton());
     const bool more = terms < max_terms && 3 * model.size() / 2 < most_unknowns;
     if (solution.is_equilibrium()) break;
     if (!more || options.deadline.passed()) return solution;

@@ -118,8 +118,7 @@ int LocalSolver::coarse_terms() const {
 }
 
 void LocalSolver::newton(SpanSolution& solution, NewtonOptions how) const {
-  how.load = traits_.load;
-  how.deadline = &options_.deadline;
+  how.deadline = options_.deadline;
   newton_solve(solution, how, workspace_.newton());
 }
 
@@ -155,9 +154,8 @@ SpanSolution LocalSolver::from_start(const Start& from) {
 }
 
 void LocalSolver::descend_to_constraints(SpanSolution& solution) const {
-  descend_by_augmented_lagrangian(
-      solution,
-      {.load = traits_.load, .deadline = &options_.deadline, .stiffness = traits_.stiffness});
+  descend_by_augmented_lagrangian(solution,
+                                  {.deadline = options_.deadline, .stiffness = traits_.stiffness});
   if (succeeded(solution.status)) newton(solution);
 }
 
@@ -209,10 +207,7 @@ void LocalSolver::descend(SpanSolution& solution) {
 void LocalSolver::minimise(SpanSolution& solution) const {
   SpanEnergy& model = *solution.model;
   if (model.constraints() > 0) {
-    descend_in_trust_region(solution, {.load = traits_.load,
-                                       .gradient_tolerance = handover_gradient,
-                                       .nearest = handover_step,
-                                       .deadline = &options_.deadline});
+    descend_in_trust_region(solution, {.nearest = handover_step, .deadline = options_.deadline});
     return;
   }
   SpanPoint point;

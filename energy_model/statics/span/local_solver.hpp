@@ -46,11 +46,6 @@ inline constexpr int least_model_terms = 9;
 /// @throws std::invalid_argument if the model would have more unknowns than affordable
 void require_affordable(const Span& span, int terms, std::string_view function);
 
-/// Gradient norm, divided by 1 + load, at which a descent ends and Newton's method takes over: two
-/// Newton steps square it to below rounding, while a line search, which compares energies, would
-/// stall near the root of the rounding error.
-inline constexpr double handover_gradient = 1e-5;
-
 /// Length of Newton's step [rad] below which Newton's method takes over.
 inline constexpr double handover_step = 0.1;
 

@@ -265,9 +265,8 @@ std::optional<Span> adapted_mesh(const LocalSolver& on, const SpanSolution& shap
 
 SpanSolution certified_solution(SpanSolution solution, const SpanOptions& options,
                                 SpanWorkspace& workspace) {
-  const double load = solution.model->span().total_load();
   const int spent = solution.evaluations;
-  certify(solution, load, workspace.factors());
+  certify(solution, workspace.factors());
   solution.evaluations = spent;
   const bool asks = solution.status == SolveStatus::near_singular ||
                     (is_result(solution, options) && solution.error > largest_unrefined_error);
@@ -286,7 +285,7 @@ SpanSolution certified_solution(SpanSolution solution, const SpanOptions& option
   // coefficients resolve it.
   if (!solution.resolved) finer = refine(on, std::move(finer));
   finer.resolved = finer.resolved || solution.resolved;
-  certify(finer, load, workspace.factors());
+  certify(finer, workspace.factors());
   const int evaluations = solution.evaluations + finer.evaluations;
   // More coefficients may determine a shape that has a zero mode, along which rounding moves it.
   const bool determined = finer.is_equilibrium() && !solution.is_equilibrium();

@@ -33,6 +33,7 @@ void for_each(Terms& terms, const Function& function) {
 
 void SpanEnergy::reset(const Span& span, int terms) {
   span_ = span;
+  load_ = span.total_load();
   elements_ = elements_of(span);
   table_ = span.planar ? &legendre_table(terms) : &director_table(terms);
   tabulate_nodes(elements_, *table_, s_, weights_);

@@ -42,6 +42,8 @@ class SpanEnergy {
   void reset(const Span& span, int terms);
 
   [[nodiscard]] const Span& span() const { return span_; }
+  /// Returns Span::total_load() of the span.
+  [[nodiscard]] double load() const { return load_; }
   [[nodiscard]] Eigen::Index size() const { return unknowns_.size(); }
   [[nodiscard]] Eigen::Index constraints() const {
     return grips_.positions() + contacts_.count() + grips_.directions();
@@ -194,6 +196,7 @@ class SpanEnergy {
   void update_revision();
 
   Span span_;
+  double load_ = 0;
   std::vector<Element> elements_;
   SpanUnknowns unknowns_;
   double twist_root_ = 0;  // derivative of the last unknown by the twist

@@ -62,6 +62,9 @@ struct [[nodiscard]] SpanSolution {
     model->evaluate(where, at);
     ++evaluations;
   }
+  /// Returns the scale of forces. It includes the multipliers, as grips may pull harder than weight
+  /// and loads.
+  [[nodiscard]] double scale_of_forces() const { return 1 + model->load() + multipliers.norm(); }
   void finish(SolveStatus how) {
     status = how;
     message = to_string(how);
