@@ -26,7 +26,7 @@ Combinations lowest_combinations(const std::vector<std::vector<SpanCandidate>>& 
         choice.own.push_back(i);
       }
     }
-    std::stable_sort(longer.begin(), longer.end(), [](const Choice& a, const Choice& b) {
+    std::ranges::stable_sort(longer, [](const Choice& a, const Choice& b) {
       return std::tie(a.unstable, a.energy) < std::tie(b.unstable, b.energy);
     });
     result.truncated = !longer.empty() && (result.truncated || longer.size() > most);

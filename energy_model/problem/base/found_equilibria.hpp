@@ -41,7 +41,7 @@ template <typename Shape>
 /// their order.
 template <typename Shape>
 void sort_by_stability(std::vector<Shape>& found) {
-  std::stable_sort(found.begin(), found.end(), [](const Shape& a, const Shape& b) {
+  std::ranges::stable_sort(found, [](const Shape& a, const Shape& b) {
     if (a.stable() != b.stable()) return a.stable();
     const double rounding = 1e-11 * (1 + std::abs(a.energy.total()));
     return a.energy.total() < b.energy.total() - rounding;

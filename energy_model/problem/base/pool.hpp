@@ -17,10 +17,10 @@ class Pool {
   template <typename Fits>
   [[nodiscard]] std::shared_ptr<T> take(const Fits& fits) {
     const auto is_unused = [](const auto& kept) { return kept.use_count() == 1; };
-    auto unused = std::find_if(kept_.begin(), kept_.end(),
-                               [&](const auto& kept) { return is_unused(kept) && fits(*kept); });
+    auto unused = std::ranges::find_if(
+        kept_, [&](const auto& kept) { return is_unused(kept) && fits(*kept); });
     const bool full = kept_.size() >= most_kept;
-    if (unused == kept_.end() && full) unused = std::find_if(kept_.begin(), kept_.end(), is_unused);
+    if (unused == kept_.end() && full) unused = std::ranges::find_if(kept_, is_unused);
     if (unused != kept_.end()) return *unused;
     auto made = std::make_shared<T>();
     if (!full) kept_.push_back(made);

@@ -139,7 +139,7 @@ class DistributedActions {
     constexpr double shortest_contact_share =
         1.0 / 2048;  // contact is longer than this share of the rod
     const Eigen::Index last = points.cols() - 1;
-    return std::any_of(yielding_.begin(), yielding_.end(), [&](std::size_t i) {
+    return std::ranges::any_of(yielding_, [&](std::size_t i) {
       const obstacle::Body& body = problem_.obstacles[i].body;
       const Eigen::VectorXd clearance = body.clearances(points);
       const auto changes = [&](Eigen::Index one, Eigen::Index other) {
@@ -156,8 +156,7 @@ class DistributedActions {
   }
 
   [[nodiscard]] const RodPart& part_at(double s) const {
-    const auto part =
-        std::find_if(parts_.begin(), parts_.end(), [&](const RodPart& own) { return s < own.end; });
+    const auto part = std::ranges::find_if(parts_, [&](const RodPart& own) { return s < own.end; });
     return part == parts_.end() ? parts_.back() : *part;
   }
 

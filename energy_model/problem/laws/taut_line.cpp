@@ -173,7 +173,7 @@ bool is_taut_line(const Problem& problem) {
   }
   const Eigen::Vector3d chord = along.back().grip->position - first.position;
   if (!(std::abs(chord.norm() - problem.length) <= rounding)) return false;
-  return std::all_of(problem.grips.begin(), problem.grips.end(), [&](const Grip& grip) {
+  return std::ranges::all_of(problem.grips, [&](const Grip& grip) {
     const Eigen::Vector3d there = first.position + (grip.at - first.at) / problem.length * chord;
     return (grip.position - there).norm() <= line_rounding * problem.length;
   });

@@ -86,12 +86,11 @@ bool bends_in_plane(const Problem& problem, const Eigen::Vector3d& normal) {
   constexpr double rounding = 1e-12;
   if (!has_material_directors(problem)) return true;
   const auto about_d2 = [](const Eigen::Vector3d& u) { return u.x() == 0 && u.z() == 0; };
-  const bool flat =
-      std::all_of(problem.natural_strains.begin(), problem.natural_strains.end(), about_d2) &&
-      std::all_of(problem.sections.begin(), problem.sections.end(), [](const Section& section) {
-        return section.natural_curvature.value_or(Eigen::Vector2d::Zero()).x() == 0 &&
-               section.natural_twist.value_or(0) == 0;
-      });
+  const bool flat = std::ranges::all_of(problem.natural_strains, about_d2) &&
+                    std::ranges::all_of(problem.sections, [](const Section& section) {
+                      return section.natural_curvature.value_or(Eigen::Vector2d::Zero()).x() == 0 &&
+                             section.natural_twist.value_or(0) == 0;
+                    });
   return flat &&
          (!first_clamp(problem) || first_frame(problem).col(1).cross(normal).norm() < rounding);
 }
@@ -103,8 +102,8 @@ bool has_material_directors(const Problem& problem) {
 }
 
 bool has_couples(const Problem& problem) {
-  return std::any_of(problem.loads.begin(), problem.loads.end(),
-                     [](const Load& load) { return !load.torque.isZero(0); });
+  return std::ranges::any_of(problem.loads,
+                             [](const Load& load) { return !load.torque.isZero(0); });
 }
 
 bool has_potential(const Problem& problem) {

@@ -123,18 +123,18 @@ Eigen::Vector3d total_uniform_weight(const Problem& problem) {
 
 bool has_two_stiffnesses(const Problem& problem) {
   return problem.bending_stiffness_2 ||
-         std::any_of(problem.sections.begin(), problem.sections.end(),
-                     [](const Section& section) { return section.bending_stiffness_2; });
+         std::ranges::any_of(problem.sections, [](const Section& section) {
+           return section.bending_stiffness_2.has_value();
+         });
 }
 
 bool has_dead_loads(const Problem& problem) {
-  return !problem.drag && std::none_of(problem.loads.begin(), problem.loads.end(),
-                                       [](const Load& load) { return load.follows; });
+  return !problem.drag && std::ranges::none_of(problem.loads, &Load::follows);
 }
 
 int clamps_with_frames(const Problem& problem) {
-  return static_cast<int>(std::count_if(problem.grips.begin(), problem.grips.end(),
-                                        [](const Grip& grip) { return grip.frame.has_value(); }));
+  return static_cast<int>(std::ranges::count_if(
+      problem.grips, [](const Grip& grip) { return grip.frame.has_value(); }));
 }
 
 void require_inextensible(const Problem& problem, std::string_view function) {
@@ -240,9 +240,7 @@ std::vector<OrderedGrip> grips_by_arc_length(const Problem& problem) {
   std::vector<OrderedGrip> grips;
   grips.reserve(problem.grips.size());
   for (std::size_t i = 0; i < problem.grips.size(); ++i) grips.push_back({i, &problem.grips[i]});
-  std::stable_sort(grips.begin(), grips.end(), [](const OrderedGrip& a, const OrderedGrip& b) {
-    return a.grip->at < b.grip->at;
-  });
+  std::ranges::stable_sort(grips, {}, [](const OrderedGrip& each) { return each.grip->at; });
   return grips;
 }
 

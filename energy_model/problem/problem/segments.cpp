@@ -101,8 +101,7 @@ std::vector<Segment> segments_of(const Span& span) {
   if (span.holds.empty()) return {};
   std::vector<Span::Hold> points = {{span.anchor, Eigen::Vector3d::Zero()}};
   points.insert(points.end(), span.holds.begin(), span.holds.end());
-  std::stable_sort(points.begin(), points.end(),
-                   [](const Span::Hold& a, const Span::Hold& b) { return a.at < b.at; });
+  std::ranges::stable_sort(points, {}, &Span::Hold::at);
   std::vector<Segment> segments;
   for (std::size_t i = 0; i + 1 < points.size(); ++i) {
     Segment segment;

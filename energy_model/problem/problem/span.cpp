@@ -48,7 +48,7 @@ Eigen::Vector3d Span::force_before(double s) const {
 }
 
 bool Span::has_couples() const {
-  return std::any_of(loads.begin(), loads.end(), [](const Load& load) { return load.couple != 0; });
+  return std::ranges::any_of(loads, [](const Load& load) { return load.couple != 0; });
 }
 
 bool Span::has_unidirectional_load() const {

@@ -87,8 +87,8 @@ bool are_symmetric(const Span& span) {
     return obstacle.body.is_symmetric(Eigen::Vector3d::Zero(), Eigen::Vector3d::UnitZ(),
                                       span.length);
   };
-  return std::all_of(span.soft_obstacles.begin(), span.soft_obstacles.end(), symmetric) &&
-         std::all_of(span.rigid_obstacles.begin(), span.rigid_obstacles.end(), symmetric);
+  return std::ranges::all_of(span.soft_obstacles, symmetric) &&
+         std::ranges::all_of(span.rigid_obstacles, symmetric);
 }
 
 /// Adds the sections of the rod between two arc lengths to a span that runs from placed.start on.
@@ -167,8 +167,7 @@ void place_couples(const Problem& problem, const SpanInterval& stretch, PlacedSp
     // The couple is added to the load without a couple that place_loads() has placed at s; couples
     // at one position add up.
     const double s = placed.s_of(load.at, problem.length);
-    const auto at = std::find_if(placed.span.loads.begin(), placed.span.loads.end(),
-                                 [s](const Span::Load& other) { return other.at == s; });
+    const auto at = std::ranges::find(placed.span.loads, s, &Span::Load::at);
     at->couple += own.z() / unit;
     const CoupleZero zero = couple_zero(problem, load);
     const Eigen::Vector3d direction = (placed.reversed ? -1 : 1) * (placed.frame * zero.direction);
@@ -230,8 +229,7 @@ void place_loads(const Problem& problem, const SpanInterval& stretch, PlacedSpan
       directions.grips.push_back(direction);
     }
   }
-  std::sort(span.loads.begin(), span.loads.end(),
-            [](const Span::Load& a, const Span::Load& b) { return a.at < b.at; });
+  std::ranges::sort(span.loads, {}, &Span::Load::at);
 }
 
 void place_obstacles(const Problem& problem, PlacedSpan& placed, Directions& directions) {
@@ -304,7 +302,7 @@ std::vector<double> cuts_at_clamps(const Problem& problem, const std::vector<Ord
   }
   const bool material = has_material_directors(problem);
   const auto holds = [](const OrderedGrip& g) { return g.grip->frame.has_value(); };
-  const auto first = std::find_if(clamps.begin(), clamps.end(), holds);
+  const auto first = std::ranges::find_if(clamps, holds);
   const auto last = std::find_if(clamps.rbegin(), clamps.rend(), holds).base();
   std::vector<double> cuts;
   for (auto clamp = clamps.begin(); clamp != clamps.end(); ++clamp) {

@@ -408,8 +408,7 @@ void certify_out_of_plane(SpanSolution& solution, NewtonFactors& factors) {
   const auto is_along = [&](const Eigen::Vector3d& force) {
     return force.cross(*span.start_direction).norm() <= 1e-6 * force.norm();
   };
-  if (is_along(span.weight) && std::all_of(span.loads.begin(), span.loads.end(),
-                                           [&](const auto& l) { return is_along(l.force); })) {
+  if (is_along(span.weight) && std::ranges::all_of(span.loads, is_along, &Span::Load::force)) {
     solution.rigid_body_modes =
         static_cast<int>(rigid_body_modes(span, solution.at_x()->tangents()).all());
   }

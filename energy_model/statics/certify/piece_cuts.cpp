@@ -312,8 +312,7 @@ std::vector<RidgeCrossing> ridge_crossings(const SpanSolution& solution) {
     const double crossed = std::abs(jump.dot(samples.tangents.col(0)));
     crossings.push_back({s, std::sqrt(-obstacle.stiffness * after.value / crossed) * jump});
   }
-  std::sort(crossings.begin(), crossings.end(),
-            [](const RidgeCrossing& a, const RidgeCrossing& b) { return a.s < b.s; });
+  std::ranges::sort(crossings, {}, &RidgeCrossing::s);
   return crossings;
 }
 

@@ -64,7 +64,7 @@ void add_minima_beside_contacts(const Span& span, const Span::Obstacle& obstacle
       const double high = std::max(s[at - 1], s[at + 1]);
       const GapMinimum lowest = smallest_clearance(obstacle, shape, low, s[at], high);
       // The grid may already have found it.
-      const bool known = std::any_of(found.begin(), found.end(), [&](const GapMinimum& other) {
+      const bool known = std::ranges::any_of(found, [&](const GapMinimum& other) {
         return other.obstacle.index == obstacle.index && other.s >= low && other.s <= high;
       });
       if (lowest.clearance < below && !known) found.push_back(lowest);
@@ -253,8 +253,8 @@ class Contacts {
     for (std::size_t i = 0; i + 1 < contacts_.size();) {
       Span::Contact& here = contacts_[i];
       const Span::Contact& next = contacts_[i + 1];
-      const bool split = std::find(second_split_points_.begin(), second_split_points_.end(),
-                                   next.begin) != second_split_points_.end();
+      const bool split =
+          std::ranges::find(second_split_points_, next.begin) != second_split_points_.end();
       if (split || !should_join(here, next)) {
         ++i;
         continue;
@@ -294,8 +294,7 @@ class Contacts {
     }
     const double at = std::clamp(lowest.s, 0.0, length);
     contacts_.push_back({lowest.obstacle, at, at, true, lowest.feature});
-    std::sort(contacts_.begin(), contacts_.end(),
-              [](const auto& a, const auto& b) { return a.begin < b.begin; });
+    std::ranges::sort(contacts_, {}, &Span::Contact::begin);
   }
 
   /// Whether a contact and the next one should be joined: they are with the same feature of the
@@ -387,12 +386,12 @@ std::vector<GapMinimum> gap_minima(const Span& span, const SpanShape& shape, dou
     }
     add_minima_beside_contacts(span, obstacle, shape, below, h, found);
   }
-  std::sort(found.begin(), found.end(), [](const auto& a, const auto& b) { return a.s < b.s; });
+  std::ranges::sort(found, {}, &GapMinimum::s);
   return found;
 }
 
 Penetration judge_penetration(const Problem& problem, Equilibrium& equilibrium) {
-  if (std::none_of(problem.obstacles.begin(), problem.obstacles.end(), is_rigid)) return {};
+  if (std::ranges::none_of(problem.obstacles, is_rigid)) return {};
   const double l = problem.length;
   const Penetration deepest = penetration(problem, equilibrium);
   equilibrium.penetration = deepest.depth;

@@ -41,8 +41,7 @@ using PathPoints = std::vector<Eigen::Vector3d>;
 std::vector<PathInterval> path_intervals(const Span& span) {
   std::vector<Span::Hold> grips = {{span.anchor, Eigen::Vector3d::Zero()}};
   grips.insert(grips.end(), span.holds.begin(), span.holds.end());
-  std::stable_sort(grips.begin(), grips.end(),
-                   [](const auto& a, const auto& b) { return a.at < b.at; });
+  std::ranges::stable_sort(grips, {}, &Span::Hold::at);
   const double shortest = rounding_length * span.length;
   std::vector<PathInterval> reaches;
   for (std::size_t i = 0; i + 1 < grips.size(); ++i) {
@@ -149,8 +148,7 @@ std::optional<Span> pinned_on_path(const Span& span, const PathInterval& reach,
     pinned.holds.push_back(
         {.at = reach.from_s + reach.sense * per_path * at[i], .offset = path[i]});
   }
-  std::stable_sort(pinned.holds.begin(), pinned.holds.end(),
-                   [](const auto& a, const auto& b) { return a.at < b.at; });
+  std::ranges::stable_sort(pinned.holds, {}, &Span::Hold::at);
   return pinned;
 }
 
@@ -160,8 +158,8 @@ class PinnedSpans {
   explicit PinnedSpans(const Span& span) : span_(span) {
     for (const Span::SoftObstacle& obstacle : span.soft_obstacles) add_body(obstacle.body);
     for (const Span::Obstacle& obstacle : span.rigid_obstacles) add_body(obstacle.body);
-    std::stable_sort(bodies_.begin(), bodies_.end(), [](const auto& a, const auto& b) {
-      return a.clearance(Eigen::Vector3d::Zero()) < b.clearance(Eigen::Vector3d::Zero());
+    std::ranges::stable_sort(bodies_, {}, [](const obstacle::Body& body) {
+      return body.clearance(Eigen::Vector3d::Zero());
     });
   }
 
@@ -191,8 +189,7 @@ class PinnedSpans {
     const auto distance = [&](const obstacle::Body* body) {
       return (body_middle(*body, reach.from) - reach.from).norm();
     };
-    std::sort(row.begin(), row.end(),
-              [&](const auto* a, const auto* b) { return distance(a) < distance(b); });
+    std::ranges::sort(row, {}, distance);
     for (unsigned sides = 0; sides < 1U << row.size(); ++sides) {
       if (spans_.size() == most_spans) return;
       PathPoints path;
@@ -213,11 +210,10 @@ class PinnedSpans {
   /// Whether all points of a path are outside the rigid obstacles.
   [[nodiscard]] bool is_clear(const PathPoints& path) const {
     const auto is_inside = [&](const Span::Obstacle& obstacle) {
-      return std::any_of(path.begin(), path.end(), [&](const Eigen::Vector3d& point) {
-        return obstacle.body.clearance(point) < 0;
-      });
+      return std::ranges::any_of(
+          path, [&](const Eigen::Vector3d& point) { return obstacle.body.clearance(point) < 0; });
     };
-    return std::none_of(span_.rigid_obstacles.begin(), span_.rigid_obstacles.end(), is_inside);
+    return std::ranges::none_of(span_.rigid_obstacles, is_inside);
   }
 
   const Span& span_;

@@ -126,11 +126,10 @@ class PenaltyRelaxation {
   /// Whether a shape has points within the core of a rigid obstacle other than a half-space.
   [[nodiscard]] bool passes_through_core(const TangentField& start) const {
     const Eigen::Matrix3Xd points = points_of(start);
-    return std::any_of(
-        span_.rigid_obstacles.begin(), span_.rigid_obstacles.end(), [&](const auto& obstacle) {
-          const obstacle::Body& body = obstacle.body;
-          return !body.is_half_space() && body.clearances(points).minCoeff() < -body.radius();
-        });
+    return std::ranges::any_of(span_.rigid_obstacles, [&](const auto& obstacle) {
+      const obstacle::Body& body = obstacle.body;
+      return !body.is_half_space() && body.clearances(points).minCoeff() < -body.radius();
+    });
   }
 
   [[nodiscard]] PenaltyPolygon relax_from(const TangentField& start, const Deadline& deadline) {
@@ -182,8 +181,7 @@ class PenaltyRelaxation {
     for (const Span::Obstacle& obstacle : span_.rigid_obstacles) {
       add_contacts(obstacle, found.points, result);
     }
-    std::sort(result.contacts.begin(), result.contacts.end(),
-              [](const auto& a, const auto& b) { return a.begin < b.begin; });
+    std::ranges::sort(result.contacts, {}, &Span::Contact::begin);
     return result;
   }
 
@@ -209,9 +207,8 @@ class PenaltyRelaxation {
   }
 
   [[nodiscard]] Eigen::Index point_at(double at) const {
-    const auto nearest = std::min_element(mesh_.s.begin(), mesh_.s.end(), [at](double a, double b) {
-      return std::abs(a - at) < std::abs(b - at);
-    });
+    const auto nearest =
+        std::ranges::min_element(mesh_.s, {}, [at](double s) { return std::abs(s - at); });
     return nearest - mesh_.s.begin();
   }
 
@@ -250,9 +247,8 @@ class PenaltyRelaxation {
   void set_held_points() {
     const auto last = static_cast<Eigen::Index>(mesh_.s.size()) - 1;
     const auto hold_point = [&](Eigen::Index point, const Eigen::Vector3d& position) {
-      const bool held =
-          std::any_of(problem_.held.begin(), problem_.held.end(),
-                      [point](const HeldPoint& other) { return other.point == point; });
+      const bool held = std::ranges::any_of(
+          problem_.held, [point](const HeldPoint& other) { return other.point == point; });
       if (!held) problem_.held.push_back({point, position});
     };
     if (mesh_.before) hold_point(0, -problem_.rest_lengths[0] * *span_.start_direction);

@@ -31,9 +31,8 @@ struct Element {
 
 /// Number of elements before an arc length at which an element begins or ends.
 [[nodiscard]] inline Eigen::Index elements_before(const std::vector<Element>& elements, double s) {
-  return std::count_if(elements.begin(), elements.end(), [s](const Element& element) {
-    return element.begin + element.length / 2 < s;
-  });
+  return std::ranges::count_if(
+      elements, [s](const Element& element) { return element.begin + element.length / 2 < s; });
 }
 
 }  // namespace dlo::energy_model

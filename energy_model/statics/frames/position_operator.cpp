@@ -90,8 +90,8 @@ PointOperator PositionOperator::along(Eigen::Index element) const {
 
 Eigen::VectorXd PositionOperator::at(double s) const {
   const auto ends_before = [s](const Element& element) { return element.end() <= s; };
-  const Eigen::Index element = std::min<Eigen::Index>(
-      std::count_if(elements_.begin(), elements_.end(), ends_before), std::ssize(elements_) - 1);
+  const Eigen::Index element = std::min<Eigen::Index>(std::ranges::count_if(elements_, ends_before),
+                                                      std::ssize(elements_) - 1);
   const Element& own = elements_[static_cast<std::size_t>(element)];
   return points(element, Eigen::VectorXd::Constant(1, (s - own.begin) / own.length)).weights(0);
 }

@@ -275,9 +275,8 @@ Eigen::VectorXd eigenvector_by_magnitude(ReducedHessian& hessian, Eigen::Index i
   const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> eigen(hessian.matrix());
   std::vector<Eigen::Index> order(static_cast<std::size_t>(eigen.eigenvalues().size()));
   std::iota(order.begin(), order.end(), Eigen::Index{0});
-  std::stable_sort(order.begin(), order.end(), [&](Eigen::Index a, Eigen::Index b) {
-    return std::abs(eigen.eigenvalues()[a]) < std::abs(eigen.eigenvalues()[b]);
-  });
+  std::ranges::stable_sort(order, {},
+                           [&](Eigen::Index i) { return std::abs(eigen.eigenvalues()[i]); });
   return hessian.to_unknowns(eigen.eigenvectors().col(order.at(static_cast<std::size_t>(index))));
 }
 

@@ -185,7 +185,7 @@ bool ActiveSet::is_within_truncation(const SpanSolution& solution) const {
   if (!solution.is_equilibrium()) return false;
   const std::vector<GapMinimum> behind = gap_minima(searched_, solution.model->shape(solution.x),
                                                     -contact_tolerance * searched_.length);
-  return !behind.empty() && std::all_of(behind.begin(), behind.end(), [&](const auto& lowest) {
+  return !behind.empty() && std::ranges::all_of(behind, [&](const auto& lowest) {
     return lowest.clearance > -coarse_contact_tolerance * searched_.length;
   });
 }
@@ -221,9 +221,8 @@ bool fix_contact_points(Span& span) {
 std::optional<std::vector<Span::Contact>> moved_contacts(const Span& span,
                                                          std::vector<Span::Contact> known) {
   for (Span::Contact& contact : known) {
-    const auto moved = std::find_if(
-        span.rigid_obstacles.begin(), span.rigid_obstacles.end(),
-        [&](const Span::Obstacle& other) { return other.index == contact.obstacle.index; });
+    const auto moved =
+        std::ranges::find(span.rigid_obstacles, contact.obstacle.index, &Span::Obstacle::index);
     if (moved == span.rigid_obstacles.end()) return std::nullopt;
     contact.obstacle = *moved;
     contact.slides = true;

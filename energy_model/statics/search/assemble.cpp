@@ -60,7 +60,7 @@ void place_twisted_material(const Problem& problem,
   const auto is_twisted = [](const SpanSolution* solution) {
     return solution->model->span().twist.has_value();
   };
-  const auto first = std::find_if(solutions.begin(), solutions.end(), is_twisted);
+  const auto first = std::ranges::find_if(solutions, is_twisted);
   if (first == solutions.end()) return;
   const double l = problem.length;
   const std::vector<RodPart> parts = rod_parts(problem);
@@ -211,8 +211,7 @@ class Assembly {
       result_.message += ": " + std::to_string(result_.neutral_directions) + " neutral direction" +
                          (result_.neutral_directions == 1 ? "" : "s");
     }
-    std::sort(result_.contacts.begin(), result_.contacts.end(),
-              [](const ContactPart& a, const ContactPart& b) { return a.begin < b.begin; });
+    std::ranges::sort(result_.contacts, {}, &ContactPart::begin);
     add_loads_on_clamps(problem_, result_);
     place_shapes(placed, solutions);
     return std::move(result_);

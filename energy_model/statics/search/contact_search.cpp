@@ -95,7 +95,7 @@ class ContactSearch {
       log_tried(options_.log, past_obstacles);
       if (options_.other_side_starts != nullptr) ++*options_.other_side_starts;
       PenaltyPolygon polygon = coarse_polygon(arch_field(start));
-      const bool is_new = std::none_of(known.begin(), known.end(), [&](const auto& other) {
+      const bool is_new = std::ranges::none_of(known, [&](const auto& other) {
         return polygon.points.cols() == other.points.cols() &&
                (polygon.points - other.points).colwise().norm().maxCoeff() <
                    same_coarse_polygon * span_.length;
@@ -232,18 +232,16 @@ class ContactSearch {
       log_tried(options_.log, polygons_at_rest);
       PenaltyPolygon polygon = rest(i);
       found_.add_evaluations(polygon.evaluations);
-      const bool known = std::any_of(polygons.begin(), polygons.end(), [&](const auto& other) {
+      const bool known = std::ranges::any_of(polygons, [&](const auto& other) {
         return other.at_rest && polygon.at_rest &&
                std::abs(other.energy - polygon.energy) <
                    same_energy_of_polygons * (1 + std::abs(other.energy));
       });
       if (!known) polygons.push_back(std::move(polygon));
     }
-    const bool any_rests = std::any_of(polygons.begin(), polygons.end(),
-                                       [](const auto& polygon) { return polygon.at_rest; });
+    const bool any_rests = std::ranges::any_of(polygons, &PenaltyPolygon::at_rest);
     std::erase_if(polygons, [&](const auto& polygon) { return any_rests && !polygon.at_rest; });
-    std::stable_sort(polygons.begin(), polygons.end(),
-                     [](const auto& a, const auto& b) { return a.energy < b.energy; });
+    std::ranges::stable_sort(polygons, {}, &PenaltyPolygon::energy);
     return polygons;
   }
 

@@ -57,7 +57,7 @@ std::vector<Equilibrium> combine(const Problem& problem, const std::vector<Place
     judge_penetration(problem, result.back());
     judge_balance(problem, result.back());
   }
-  std::stable_sort(result.begin(), result.end(), [](const Equilibrium& a, const Equilibrium& b) {
+  std::ranges::stable_sort(result, [](const Equilibrium& a, const Equilibrium& b) {
     if (succeeded(a.status) != succeeded(b.status)) return succeeded(a.status);
     return a.energy.total() < b.energy.total();
   });

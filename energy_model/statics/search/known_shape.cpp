@@ -92,8 +92,7 @@ std::vector<Span::Contact> known_contacts(const Equilibrium& known, const Placed
     contact.end = end;
     contacts.push_back(contact);
   }
-  std::sort(contacts.begin(), contacts.end(),
-            [](const auto& a, const auto& b) { return a.begin < b.begin; });
+  std::ranges::sort(contacts, {}, &Span::Contact::begin);
   return contacts;
 }
 

@@ -62,8 +62,8 @@ bool has_passable_obstacle(const Span& span) {
   const auto is_body = [](const Span::Obstacle& obstacle) {
     return !obstacle.body.is_half_space();
   };
-  return std::any_of(span.rigid_obstacles.begin(), span.rigid_obstacles.end(), is_body) ||
-         std::any_of(span.soft_obstacles.begin(), span.soft_obstacles.end(), is_body);
+  return std::ranges::any_of(span.rigid_obstacles, is_body) ||
+         std::ranges::any_of(span.soft_obstacles, is_body);
 }
 
 /// Solves for the single equilibrium near SpanOptions::start.
@@ -80,13 +80,12 @@ class PolygonFields {
   PolygonFields(const Problem& problem, const PlacedSpan& placed, const Deadline& deadline)
       : deadline_(deadline), reversed_(placed.reversed), frame_(placed.frame) {
     const auto is_clamp = [](const Span::Hold& hold) { return hold.direction.has_value(); };
-    if (std::any_of(placed.span.holds.begin(), placed.span.holds.end(), is_clamp)) return;
+    if (std::ranges::any_of(placed.span.holds, is_clamp)) return;
     const double begin = placed.reversed ? placed.start / problem.length - placed.span.length
                                          : placed.start / problem.length;
     const std::vector<RodSpan> spans = cut_at_clamps(problem);
-    span_ = *std::min_element(spans.begin(), spans.end(), [&](const auto& a, const auto& b) {
-      return std::abs(a.begin - begin) < std::abs(b.begin - begin);
-    });
+    span_ = *std::ranges::min_element(
+        spans, {}, [&](const RodSpan& span) { return std::abs(span.begin - begin); });
     // Resolves boundary layers of the loads, but no more than a coarse polygon needs.
     const double load = std::min(total_load(*span_), 1e4);
     longest_ = std::min(span_->length / 16, 1 / std::sqrt(std::max(load, 1.0)));

@@ -24,16 +24,14 @@ bool is_better(const SpanSolution& a, const SpanSolution& b) {
 }  // namespace
 
 SearchStrategy& SearchLog::entry_of(const std::string& strategy) {
-  const auto known =
-      std::find_if(strategies_.begin(), strategies_.end(),
-                   [&](const SearchStrategy& other) { return other.name == strategy; });
+  const auto known = std::ranges::find(strategies_, strategy, &SearchStrategy::name);
   if (known != strategies_.end()) return *known;
   strategies_.push_back({strategy, 0, 0});
   return strategies_.back();
 }
 
 void SearchLog::add_omitted(const std::string& what) {
-  if (std::find(omitted_.begin(), omitted_.end(), what) != omitted_.end()) return;
+  if (std::ranges::find(omitted_, what) != omitted_.end()) return;
   omitted_.push_back(what);
 }
 
@@ -104,9 +102,8 @@ bool Found::add(SpanSolution solution, const std::string& strategy) {
     return false;
   }
   if (!found_.empty() && !is_result(found_.front(), options_)) found_.clear();
-  const bool known = std::any_of(found_.begin(), found_.end(), [&](const SpanSolution& other) {
-    return is_same_shape(solution, other);
-  });
+  const bool known = std::ranges::any_of(
+      found_, [&](const SpanSolution& other) { return is_same_shape(solution, other); });
   if (known) return false;
   // Keeping the factors of many equilibria would take much memory, and most are not used again.
   if (options_.wants_all()) solution.factor.reset();
@@ -115,9 +112,7 @@ bool Found::add(SpanSolution solution, const std::string& strategy) {
   return true;
 }
 
-const SpanSolution& Found::best() const {
-  return *std::min_element(found_.begin(), found_.end(), is_better);
-}
+const SpanSolution& Found::best() const { return *std::ranges::min_element(found_, is_better); }
 
 bool Found::has_stable_lowest() const {
   const SpanSolution* lowest = nullptr;
@@ -129,11 +124,10 @@ bool Found::has_stable_lowest() const {
 }
 
 std::vector<SpanSolution> Found::take() && {
-  std::stable_sort(found_.begin(), found_.end(), is_better);
+  std::ranges::stable_sort(found_, is_better);
   if (!options_.wants_all() && found_.size() > 1) {
-    found_.erase(std::remove_if(found_.begin() + 1, found_.end(),
-                                [](const auto& other) { return !succeeded(other.status); }),
-                 found_.end());
+    const auto stable = [](const SpanSolution& other) { return succeeded(other.status); };
+    found_.erase(std::find_if_not(found_.begin() + 1, found_.end(), stable), found_.end());
     for (std::size_t i = 1; i < found_.size(); ++i) found_[i].factor.reset();
   }
   if (!found_.empty()) found_.front().evaluations = evaluations_;

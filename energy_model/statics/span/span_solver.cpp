@@ -161,7 +161,7 @@ class Search {
       if (!coarse.empty()) coarse.back().factor.reset();
       SpanSolution solution = on_.from_start(starts[i]);
       found_.add_evaluations(std::exchange(solution.evaluations, 0));
-      const bool known = std::any_of(coarse.begin(), coarse.end(), [&](const auto& other) {
+      const bool known = std::ranges::any_of(coarse, [&](const auto& other) {
         return other.is_equilibrium() && is_same_shape(solution, other, same_coarse_points);
       });
       if (!known) coarse.push_back(std::move(solution));
@@ -175,7 +175,7 @@ class Search {
   /// them. More coefficients lower the energy of different shapes by about the same amount, and
   /// that of a mirror image by exactly the same.
   void refine_lowest(std::vector<SpanSolution> coarse) {
-    std::stable_sort(coarse.begin(), coarse.end(), [](const auto& a, const auto& b) {
+    std::ranges::stable_sort(coarse, [](const auto& a, const auto& b) {
       return a.is_equilibrium() != b.is_equilibrium() ? a.is_equilibrium() : a.energy < b.energy;
     });
     for (SpanSolution& solution : coarse) {
@@ -230,11 +230,9 @@ class Search {
                                        !span_.has_material_directors();
     satisfies_constraints ? rank_with_constraints(trial, ranked) : rank_with_springs(trial, ranked);
     found_.add_evaluations(trial.evaluations);
-    std::stable_sort(ranked.begin(), ranked.end(), is_cheaper);
+    std::ranges::stable_sort(ranked, {}, &Start::cost);
     return ranked;
   }
-
-  static bool is_cheaper(const Start& a, const Start& b) { return a.cost < b.cost; }
 
   void rank_with_springs(SpanSolution& trial, std::vector<Start>& starts) const {
     SpanPoint point;
@@ -260,7 +258,7 @@ class Search {
       const SpanEnergy::Estimate estimated = model.estimate(start.field(model.nodes()).tangents);
       start.cost = estimated.energy + kappa / 2 * estimated.gap * estimated.gap;
     }
-    std::stable_sort(starts.begin(), starts.end(), is_cheaper);
+    std::ranges::stable_sort(starts, {}, &Start::cost);
     std::vector<double> energies;  // lowest energies of starts that satisfy the constraints
     SpanPoint point;
     RestoreScratch scratch;
@@ -294,10 +292,7 @@ class Search {
     const auto is_saddle = [](const auto& solution) {
       return solution.status == SolveStatus::saddle;
     };
-    if (!options_.wants_all() &&
-        std::none_of(found_.by_discovery().begin(), found_.by_discovery().end(), is_saddle)) {
-      return;
-    }
+    if (!options_.wants_all() && std::ranges::none_of(found_.by_discovery(), is_saddle)) return;
     Span space = span_;
     space.planar = false;
     SearchLog own;

@@ -15,10 +15,10 @@ constexpr Eigen::Index slope_moments_of_short_part = 8;  // moments of the slope
 bool may_concentrate(const Span& span, double at) {
   const auto is_at = [at](double other) { return std::abs(at - other) < closest_cuts; };
   return is_held(span, at) ||
-         std::any_of(span.loads.begin(), span.loads.end(),
-                     [&](const Span::Load& load) { return is_at(load.at); }) ||
-         std::any_of(span.parts.begin(), span.parts.end(),
-                     [&](const Span::Part& part) { return is_at(part.begin) || is_at(part.end); });
+         std::ranges::any_of(span.loads, [&](const Span::Load& load) { return is_at(load.at); }) ||
+         std::ranges::any_of(span.parts, [&](const Span::Part& part) {
+           return is_at(part.begin) || is_at(part.end);
+         });
 }
 
 /// Returns the forces on points times the second derivatives of their gaps by two coordinates.
