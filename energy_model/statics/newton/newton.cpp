@@ -81,10 +81,9 @@ class NewtonIteration {
   [[nodiscard]] Outcome handle_accepted_step(double moved);
   void finish();
 
-  void evaluate();
   [[nodiscard]] double residual();
   [[nodiscard]] double evaluated_residual() {
-    evaluate();
+    solution_.evaluate(solution_.x, *buffers_.here);
     return residual();
   }
   void move(double length);
@@ -112,7 +111,7 @@ void NewtonIteration::begin() {
   if (solution_.has_point()) {
     *buffers_.here = *solution_.point;
   } else {
-    evaluate();
+    solution_.evaluate(solution_.x, *buffers_.here);
   }
   if (solution_.multipliers.size() != model_.constraints()) {
     solution_.multipliers.setZero(model_.constraints());
@@ -125,11 +124,6 @@ void NewtonIteration::begin() {
   residual_norm_ = residual();
   const bool can_borrow = model_.constraints() > 0 && options_.method != NewtonMethod::corrector;
   if (can_borrow) step_.use_given_factor();
-}
-
-void NewtonIteration::evaluate() {
-  model_.evaluate(solution_.x, *buffers_.here);
-  ++solution_.evaluations;
 }
 
 /// Computes the norm of the residual of gradient and constraints at the present point, the latter
