@@ -37,30 +37,23 @@ constexpr double tolerance = 1e-7;
 constexpr int most_evaluations = 300;
 constexpr int most_evaluations_near = 3000;
 
-/// Points of a polygon along a span, by ascending s. A clamp at an end fixes one more point, beyond
-/// the end.
-struct Mesh {
-  std::vector<double> s;
-  bool before = false, after = false;  // whether there is a fixed point beyond the start or the end
-};
-
-Mesh mesh_of(const Span& span, Segments segments) {
+/// Returns the arc lengths of a polygon's points along a span, ascending. A clamp at an end fixes
+/// one more point, beyond the end.
+std::vector<double> mesh_of(const Span& span, Segments segments) {
   const double load = std::max(1.0, span.total_load());
   const double count = std::clamp(24 * std::pow(load, 0.25), fewest_segments, most_segments);
   const double h = span.length / (segments == Segments::few ? segment_share * count : count);
-  Mesh mesh;
-  mesh.before = span.start_direction.has_value();
-  mesh.after = span.end_direction.has_value();
-  if (mesh.before) mesh.s.push_back(-h);
-  mesh.s.push_back(0);
+  std::vector<double> mesh;
+  if (span.start_direction) mesh.push_back(-h);
+  mesh.push_back(0);
   double begin = 0;
   for (const double cut : kink_positions(span)) {
     if (cut - begin < closest_cuts) continue;
     const double parts = std::max(1.0, std::ceil((cut - begin) / h));
-    for (double i = 1; i <= parts; ++i) mesh.s.push_back(begin + (cut - begin) * i / parts);
+    for (double i = 1; i <= parts; ++i) mesh.push_back(begin + (cut - begin) * i / parts);
     begin = cut;
   }
-  if (mesh.after) mesh.s.push_back(span.length + h);
+  if (span.end_direction) mesh.push_back(span.length + h);
   return mesh;
 }
 
@@ -99,11 +92,11 @@ class PenaltyRelaxation {
  public:
   PenaltyRelaxation(const Span& span, Segments segments, Descent descent)
       : span_(span), descent_(descent), mesh_(mesh_of(span, segments)) {
-    const std::size_t count = mesh_.s.size();
+    const std::size_t count = mesh_.size();
     const double stiff = (penalty_force_scale + span.total_load()) / penalty_compliance;
     problem_.rest_lengths.resize(static_cast<Eigen::Index>(count) - 1);
     for (std::size_t i = 0; i + 1 < count; ++i) {
-      problem_.rest_lengths[static_cast<Eigen::Index>(i)] = mesh_.s[i + 1] - mesh_.s[i];
+      problem_.rest_lengths[static_cast<Eigen::Index>(i)] = mesh_[i + 1] - mesh_[i];
     }
     problem_.stretch_stiffness = stiff;
     problem_.stiffness = round_stiffness(span.stiffness);
@@ -171,7 +164,7 @@ class PenaltyRelaxation {
     result.evaluations = found.evaluations;
     result.energy = found.energy;
     result.at_rest = succeeded(found.status);
-    result.s = mesh_.s;
+    result.s = mesh_;
     result.points = found.points;
     if (!found.twists.empty()) result.twist = found.twists[0];
     const Eigen::Index n = problem_.rest_lengths.size();
@@ -186,15 +179,13 @@ class PenaltyRelaxation {
   }
 
   /// Returns about the mean length of a segment.
-  [[nodiscard]] double segment() const {
-    return span_.length / static_cast<double>(mesh_.s.size());
-  }
+  [[nodiscard]] double segment() const { return span_.length / static_cast<double>(mesh_.size()); }
 
   [[nodiscard]] int samples_of(const Span::Obstacle& obstacle) const {
     return obstacle::samples_per_segment(obstacle.body, segment());
   }
 
-  [[nodiscard]] double s(Eigen::Index i) const { return mesh_.s[static_cast<std::size_t>(i)]; }
+  [[nodiscard]] double s(Eigen::Index i) const { return mesh_[static_cast<std::size_t>(i)]; }
 
   /// Returns EI of a round rod with about the same bending; in the plane EI about its normal.
   [[nodiscard]] double round_stiffness(const Eigen::Vector3d& stiffness) const {
@@ -208,8 +199,8 @@ class PenaltyRelaxation {
 
   [[nodiscard]] Eigen::Index point_at(double at) const {
     const auto nearest =
-        std::ranges::min_element(mesh_.s, {}, [at](double s) { return std::abs(s - at); });
-    return nearest - mesh_.s.begin();
+        std::ranges::min_element(mesh_, {}, [at](double s) { return std::abs(s - at); });
+    return nearest - mesh_.begin();
   }
 
   void place_joints() {
@@ -231,7 +222,7 @@ class PenaltyRelaxation {
   }
 
   void place_forces() {
-    const auto count = static_cast<Eigen::Index>(mesh_.s.size());
+    const auto count = static_cast<Eigen::Index>(mesh_.size());
     problem_.node_forces.setZero(3, count);
     for (Eigen::Index i = 0; i < count; ++i) {
       const double begin = i == 0 ? 0 : std::max(0.0, (s(i - 1) + s(i)) / 2);
@@ -245,13 +236,13 @@ class PenaltyRelaxation {
   }
 
   void set_held_points() {
-    const auto last = static_cast<Eigen::Index>(mesh_.s.size()) - 1;
+    const auto last = static_cast<Eigen::Index>(mesh_.size()) - 1;
     const auto hold_point = [&](Eigen::Index point, const Eigen::Vector3d& position) {
       const bool held = std::ranges::any_of(
           problem_.held, [point](const HeldPoint& other) { return other.point == point; });
       if (!held) problem_.held.push_back({point, position});
     };
-    if (mesh_.before) hold_point(0, -problem_.rest_lengths[0] * *span_.start_direction);
+    if (span_.start_direction) hold_point(0, -problem_.rest_lengths[0] * *span_.start_direction);
     hold_point(point_at(span_.anchor), Eigen::Vector3d::Zero());
     for (const Span::Hold& held : span_.holds) {
       const Eigen::Index point = point_at(held.at);
@@ -260,7 +251,7 @@ class PenaltyRelaxation {
       // The clamp inside the span also fixes the point before it.
       hold_point(point - 1, held.offset - problem_.rest_lengths[point - 1] * *held.direction);
     }
-    if (!mesh_.after) return;
+    if (!span_.end_direction) return;
     hold_point(last,
                span_.holds.back().offset + problem_.rest_lengths[last - 1] * *span_.end_direction);
   }
@@ -292,7 +283,7 @@ class PenaltyRelaxation {
       return Eigen::Vector3d((coarse.points.col(after) - coarse.points.col(before)) /
                              (at(after) - at(before)));
     };
-    Eigen::Matrix3Xd points(3, static_cast<Eigen::Index>(mesh_.s.size()));
+    Eigen::Matrix3Xd points(3, static_cast<Eigen::Index>(mesh_.size()));
     for (Eigen::Index k = 0; k < points.cols(); ++k) {
       const auto above = std::upper_bound(coarse.s.begin(), coarse.s.end(), s(k));
       const Eigen::Index i = std::clamp<Eigen::Index>(above - coarse.s.begin() - 1, 0, last - 1);
@@ -352,7 +343,7 @@ class PenaltyRelaxation {
 
   const Span& span_;
   Descent descent_;
-  Mesh mesh_;
+  std::vector<double> mesh_;  // arc lengths of the points
   PolygonProblem problem_;
 };
 
