@@ -117,18 +117,6 @@ int pressed_feature(const obstacle::Body& body, const Eigen::Vector3d& point) {
   return body.clearance(point) < 0 ? body.feature(point) : outside_body;
 }
 
-Eigen::Matrix3Xd points_at(const SpanShape& shape, const std::vector<double>& s) {
-  return shape.sample(s).points;
-}
-
-std::vector<double> evenly_spaced(double length) {
-  std::vector<double> s;
-  for (Eigen::Index i = 0; i <= first_intervals; ++i) {
-    s.push_back(length * static_cast<double>(i) / static_cast<double>(first_intervals));
-  }
-  return s;
-}
-
 /// Appends equally spaced points from `begin` to `end`, both included.
 void append_divided(double begin, double end, std::vector<double>& s) {
   for (int i = 0; i <= bracket_parts; ++i) s.push_back(begin + (end - begin) * i / bracket_parts);
@@ -146,8 +134,8 @@ bool has_thin_core(const obstacle::Body& body) {
 /// requires close nodes.
 std::vector<Bracket> brackets_of(const std::vector<Span::SoftObstacle>& obstacles,
                                  const SpanShape& shape, double length) {
-  const std::vector<double> s = evenly_spaced(length);
-  const Eigen::Matrix3Xd points = points_at(shape, s);
+  const std::vector<double> s = equal_arc_lengths(length, first_intervals + 1);
+  const Eigen::Matrix3Xd points = shape.sample(s).points;
   const double spacing = length / static_cast<double>(first_intervals);
   std::vector<Bracket> brackets;
   std::vector<Bracket> dips;
@@ -173,7 +161,7 @@ std::vector<Bracket> brackets_of(const std::vector<Span::SoftObstacle>& obstacle
     std::vector<double> fine;
     append_divided(dip.begin, dip.end, fine);
     const Eigen::VectorXd clearance =
-        obstacles[dip.obstacle].body.clearances(points_at(shape, fine));
+        obstacles[dip.obstacle].body.clearances(shape.sample(fine).points);
     for (std::size_t i = 1; i < fine.size(); ++i) {
       const auto k = static_cast<Eigen::Index>(i);
       if ((clearance[k - 1] < 0) != (clearance[k] < 0)) {
@@ -190,7 +178,7 @@ std::vector<Bracket> narrow_brackets(const std::vector<Span::SoftObstacle>& obst
                                      const SpanShape& shape, const std::vector<Bracket>& brackets) {
   std::vector<double> s;
   for (const Bracket& bracket : brackets) append_divided(bracket.begin, bracket.end, s);
-  const Eigen::Matrix3Xd points = points_at(shape, s);
+  const Eigen::Matrix3Xd points = shape.sample(s).points;
   std::vector<Bracket> result;
   std::size_t first = 0;
   for (const Bracket& bracket : brackets) {
@@ -230,13 +218,13 @@ bool meets_core(const obstacle::Body& body, const SpanShape& shape, Bracket brac
     std::vector<double> s;
     append_divided(bracket.begin, bracket.end, s);
     Eigen::Index nearest = 0;
-    body.clearances(points_at(shape, s)).minCoeff(&nearest);
+    body.clearances(shape.sample(s).points).minCoeff(&nearest);
     const auto at = static_cast<std::size_t>(nearest);
     bracket = {bracket.obstacle, s[at == 0 ? 0 : at - 1],
                s[std::min<std::size_t>(at + 1, bracket_parts)]};
   }
   const std::vector<double> s = {(bracket.begin + bracket.end) / 2};
-  return body.clearances(points_at(shape, s))[0] + body.radius() < 2 * rounding * length;
+  return body.clearances(shape.sample(s).points)[0] + body.radius() < 2 * rounding * length;
 }
 
 }  // namespace
@@ -320,8 +308,8 @@ MiddlePassage classify_middle_passage(const SpanSolution& solution) {
   const Span& span = solution.model->span();
   if (span.soft_obstacles.empty()) return MiddlePassage::none;
   const SpanShape shape = solution.model->shape(solution.x);
-  const std::vector<double> s = evenly_spaced(span.length);
-  const Eigen::Matrix3Xd points = points_at(shape, s);
+  const std::vector<double> s = equal_arc_lengths(span.length, first_intervals + 1);
+  const Eigen::Matrix3Xd points = shape.sample(s).points;
   constexpr double sampled_decay_lengths = 4;
   const double visible_distance = sampled_decay_lengths * span.length / first_intervals;
   MiddlePassage passed = MiddlePassage::none;
