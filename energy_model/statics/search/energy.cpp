@@ -122,20 +122,20 @@ class EnergySolver::State {
  public:
   explicit State(const EnergyOptions& options) : options_(options) { check(options); }
 
-  enum class Request { lowest, all };
-  /// How the previous solution is used: not at all, as the initial guess, or as the only initial
-  /// guess. `points`: the initial guess is a given shape, from which the solver only descends.
-  enum class From { nothing, last_shape, last_shape_only, points };
+  /// Search for the lowest equilibrium or for all of them, without the previous solution; solve
+  /// from the previous solution, followed by a search or not; descent from a given shape alone.
+  enum class Mode { search, search_all, follow, follow_only, descend };
 
-  /// Solves a problem. @return equilibria; empty if From::last_shape_only does not lead to one
-  std::vector<Equilibrium> solve(const Problem& problem, Request wanted, From from) {
+  /// Solves a problem. @return equilibria; empty if Mode::follow_only does not lead to one
+  std::vector<Equilibrium> solve(const Problem& problem, Mode mode) {
+    const auto begin = std::chrono::steady_clock::now();
     const Deadline deadline(options_.time_limit);
     log_ = {};
     require_dead_loads(problem, "solve_energy");
     require_inextensible(problem, "solve_energy");
     if (std::optional<Equilibrium> known = shape_without_search(problem)) {
       followed_ = false;
-      if (from == From::last_shape_only) return {};
+      if (mode == Mode::follow_only) return {};
       previous_ = std::exchange(remembered_, {});
       return {std::move(*known)};
     }
@@ -146,9 +146,10 @@ class EnergySolver::State {
     }
     previous_ = remembered_;
     std::vector<Equilibrium> result =
-        solve_without_similar_obstacles(problem, placed, wanted, from, deadline);
-    if (result.empty()) result = solve_placed(problem, placed, wanted, from, deadline);
-    const double seconds = deadline.spent();
+        solve_without_similar_obstacles(problem, placed, mode, deadline);
+    if (result.empty()) result = solve_placed(problem, placed, mode, deadline);
+    const double seconds =
+        std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
     for (Equilibrium& equilibrium : result) {
       equilibrium.seconds = seconds;
       if (deadline.passed()) add_time_limit(equilibrium);
@@ -162,14 +163,9 @@ class EnergySolver::State {
   Equilibrium near(const Problem& problem, const Equilibrium& shape) {
     const Equilibrium* const given = std::exchange(options_.start, &shape);
     remembered_ = {};
-    try {
-      Equilibrium result = std::move(solve(problem, Request::lowest, From::points).front());
-      options_.start = given;
-      return result;
-    } catch (...) {
-      options_.start = given;
-      throw;
-    }
+    Equilibrium result = std::move(solve(problem, Mode::descend).front());
+    options_.start = given;
+    return result;
   }
 
   /// Log of the last solve().
@@ -191,8 +187,7 @@ class EnergySolver::State {
   ///   although there was time
   std::vector<Equilibrium> solve_without_similar_obstacles(const Problem& problem,
                                                            const std::vector<PlacedSpan>& placed,
-                                                           Request wanted, From from,
-                                                           const Deadline& deadline) {
+                                                           Mode mode, const Deadline& deadline) {
     constexpr int most_exchanges = 4;
     std::size_t preferred = 0;
     for (int exchange = 0; exchange < most_exchanges; ++exchange) {
@@ -202,7 +197,7 @@ class EnergySolver::State {
         omitted = omit_similar_obstacles(one.span, preferred) || omitted;
       }
       if (!omitted) return {};
-      std::vector<Equilibrium> result = solve_placed(problem, few, wanted, from, deadline);
+      std::vector<Equilibrium> result = solve_placed(problem, few, mode, deadline);
       const double allowed = allowed_penetration * problem.length;
       const bool outside = std::ranges::all_of(result, [&](const Equilibrium& equilibrium) {
         return equilibrium.penetration <= allowed;
@@ -217,12 +212,14 @@ class EnergySolver::State {
     return undo_and_return_none();
   }
 
-  /// Solves the spans and assembles them. @return equilibria; empty if From::last_shape_only does
-  /// not lead to one
+  /// Solves the spans and assembles them. @return equilibria; empty if Mode::follow_only does not
+  /// lead to one
   std::vector<Equilibrium> solve_placed(const Problem& problem, std::vector<PlacedSpan>& placed,
-                                        Request wanted, From from, const Deadline& deadline) {
-    const bool warm = from != From::nothing && remembered_.size() == placed.size();
-    const bool only = from == From::last_shape_only;
+                                        Mode mode, const Deadline& deadline) {
+    const bool all = mode == Mode::search_all;
+    const bool searches = all || mode == Mode::search;
+    const bool warm = !searches && remembered_.size() == placed.size();
+    const bool only = mode == Mode::follow_only;
     followed_ = warm;
     if (only && !warm) return {};
     log_ = {};
@@ -237,16 +234,15 @@ class EnergySolver::State {
       options.max_evaluations = options_.max_evaluations;
       options.deadline = deadline;
       if (only) options.start.approach = Approach::follow_only;
-      if (from == From::points) options.start.approach = Approach::descend_only;
-      if (wanted == Request::all) options.log = &log_;
+      if (mode == Mode::descend) options.start.approach = Approach::descend_only;
+      if (all) options.log = &log_;
       options.other_side_starts = &other_side_starts;
       solutions.push_back(solve_span_at(i, placed[i], problem, options, warm));
       followed_ = followed_ && solutions.back().front().followed;
       if (only && !followed_) return undo_and_return_none();
     }
-    std::vector<Equilibrium> result =
-        combine(problem, placed, solutions, wanted == Request::all ? SIZE_MAX : 1, log_);
-    if (from == From::nothing && options_.start == nullptr) {
+    std::vector<Equilibrium> result = combine(problem, placed, solutions, all ? SIZE_MAX : 1, log_);
+    if (searches && options_.start == nullptr) {
       note_search(problem, solutions, other_side_starts, result);
     }
     followed_ = followed_ && (!only || succeeded(result.front().status));
@@ -293,16 +289,15 @@ EnergySolver::EnergySolver(EnergySolver&& other) noexcept = default;
 EnergySolver& EnergySolver::operator=(EnergySolver&& other) noexcept = default;
 
 Equilibrium EnergySolver::solve(const Problem& problem) {
-  return std::move(state_->solve(problem, State::Request::lowest, State::From::nothing).front());
+  return std::move(state_->solve(problem, State::Mode::search).front());
 }
 
 Equilibrium EnergySolver::follow(const Problem& problem) {
-  return std::move(state_->solve(problem, State::Request::lowest, State::From::last_shape).front());
+  return std::move(state_->solve(problem, State::Mode::follow).front());
 }
 
 std::optional<Equilibrium> EnergySolver::try_follow(const Problem& problem) {
-  std::vector<Equilibrium> kept =
-      state_->solve(problem, State::Request::lowest, State::From::last_shape_only);
+  std::vector<Equilibrium> kept = state_->solve(problem, State::Mode::follow_only);
   if (kept.empty()) return std::nullopt;
   return std::move(kept.front());
 }
@@ -318,7 +313,7 @@ Equilibrium EnergySolver::near(const Problem& problem, const std::vector<double>
 
 EnergySearch EnergySolver::search(const Problem& problem) {
   EnergySearch result;
-  result.equilibria = state_->solve(problem, State::Request::all, State::From::nothing);
+  result.equilibria = state_->solve(problem, State::Mode::search_all);
   result.strategies = state_->log().strategies();
   result.omitted = state_->log().omitted();
   return result;
