@@ -57,8 +57,10 @@ void add_loads(const Problem& problem,
   }
 }
 
-/// Whether a load moves the rod out of a plane by more than about 1e-6 of its length, or drag by
-/// more than rounding.
+/// Component of a unit vector that counts as rounding.
+constexpr double direction_rounding = 1e-9;
+
+/// Whether a load moves the rod out of a plane by more than about 1e-6 of its length.
 bool loads_leave_plane(const Problem& problem, const Eigen::Vector3d& normal) {
   constexpr double negligible_load_share = 1e-6;
   const double most =
@@ -69,9 +71,8 @@ bool loads_leave_plane(const Problem& problem, const Eigen::Vector3d& normal) {
   const bool line_leaves = std::ranges::any_of(problem.line_loads, [&](const LineLoad& load) {
     return leaves(load.at_begin * problem.length) || leaves(load.at_end * problem.length);
   });
-  constexpr double noise = 1e-9;
   const bool drag_leaves = problem.drag && std::abs(problem.drag->velocity.dot(normal)) >
-                                               noise * problem.drag->velocity.norm();
+                                               direction_rounding * problem.drag->velocity.norm();
   return line_leaves || drag_leaves || std::ranges::any_of(problem.loads, [&](const Load& load) {
            if (load.follows) return false;  // the direction is given in the axes of the section
            const Eigen::Vector3d couple = load.torque / problem.length;
@@ -187,15 +188,13 @@ std::optional<Eigen::Vector3d> natural_normal(const Problem& problem) {
   // Without another direction, a line in x-y determines the plane x-y.
   const Eigen::Vector3d first = directions.empty() ? Eigen::Vector3d::UnitX() : directions.front();
   const auto is_along_first = [&](const Eigen::Vector3d& v) {
-    constexpr double parallel_tolerance = 1e-9;
-    return v.cross(first).norm() <= parallel_tolerance;
+    return v.cross(first).norm() <= direction_rounding;
   };
   const std::optional<Plane> plane = find_plane(Eigen::Vector3d::Zero(), first, directions);
   if (!plane) return std::nullopt;
   Eigen::Vector3d normal = plane->x.cross(plane->y);
   for (const Eigen::Index axis : {2, 1, 0}) {
-    constexpr double noise = 1e-9;
-    if (std::abs(normal[axis]) <= noise) continue;
+    if (std::abs(normal[axis]) <= direction_rounding) continue;
     if (normal[axis] < 0) normal = -normal;
     const bool is_line = std::ranges::all_of(directions, is_along_first);
     if (!is_straight && is_line && axis != 2) return std::nullopt;

@@ -16,7 +16,7 @@
 namespace dlo::energy_model {
 
 /// Difference of arc lengths, divided by the rod length, below which they are treated as equal.
-inline constexpr double same_arc_length = 1e-9;
+inline constexpr double same_arc_length_share = 1e-9;
 
 /// A part of the rod whose weight includes the line loads on it; weight_per_length is that at its
 /// begin.

@@ -326,7 +326,7 @@ std::vector<PlacedSpan> split(const Problem& problem) {
   if (clamps.empty()) {
     return {place(problem, grips, {0, problem.length})};
   }
-  const double shortest = 1e-9 * problem.length;
+  const double shortest = same_arc_length_share * problem.length;
   if (clamps.front() > shortest) {
     spans.push_back(place(problem, grips, {0, clamps.front(), false, true}));
   }

@@ -216,8 +216,7 @@ EigenvalueDerivatives eigenvalue_derivatives(SpanSolution& solution, const SoftM
   NewtonSystem& system = solution.factor->system;
   Eigen::VectorXd w;
   system.solve(right, w);
-  constexpr double longest = 1e3;
-  if (!system.is_solved_by(right, w, longest)) w = system.minimum_norm_step(right);
+  if (!system.is_solved_by(right, w)) w = system.minimum_norm_step(right);
   w -= w.head(v.size()).dot(v) * along;
   return {first,
           product(forward - 2 * image(0) + behind, along) / (step * step) + 3 * product(change, w)};

@@ -159,9 +159,9 @@ class NewtonSystem {
   void solve(const Eigen::VectorXd& right, Eigen::VectorXd& step);
 
   /// Whether a step solves the system to 1e-6 of the norm of `right`, and its x is no longer than
-  /// `longest`.
+  /// `longest`. A step longer than 1e3 shows that the system is nearly singular.
   [[nodiscard]] bool is_solved_by(const Eigen::VectorXd& right, const Eigen::VectorXd& step,
-                                  double longest);
+                                  double longest = 1e3);
 
   /// Returns the minimum-norm least-squares solution, which has no component along near-null modes.
   [[nodiscard]] Eigen::VectorXd minimum_norm_step(const Eigen::VectorXd& right);

@@ -101,9 +101,8 @@ void NewtonStep::solve() {
   if (options_.method == NewtonMethod::corrector) deflate();
   // With a near-null mode the system is nearly singular; the minimum-norm step has no component
   // along that mode.
-  constexpr double longest_kept_step = 1e3;
   if (options_.method == NewtonMethod::simplified ||
-      factor_->system.is_solved_by(right, buffers_.step, longest_kept_step)) {
+      factor_->system.is_solved_by(right, buffers_.step)) {
     return;
   }
   buffers_.step = factor_->system.minimum_norm_step(right);

@@ -17,8 +17,6 @@
 namespace dlo::energy_model {
 namespace {
 
-/// Maximum number of contact updates.
-constexpr int most_contact_updates = 16;
 /// Number of unknowns above which half of the coefficients for the load are tried first.
 constexpr int many_unknowns = 300;
 /// First trust-region radius of a descent near soft obstacles: a longer step (roughly in rad) would
@@ -88,7 +86,7 @@ SpanSolution ActiveSet::update(SpanSolution equilibrium) {
 SpanSolution ActiveSet::run(Span span, TangentField near, SpanSolution solution,
                             Resolution resolution) {
   spent_ += std::exchange(solution.evaluations, 0);
-  for (int round = 0; round < most_contact_updates; ++round) {
+  for (int round = 0; round < most_contact_rounds; ++round) {
     const bool found_already = round == 0 && solution.is_equilibrium();
     if (!found_already) solution = newton_from(span, near);
     if (!solution.is_equilibrium() && fix_contact_points(span)) solution = newton_from(span, near);

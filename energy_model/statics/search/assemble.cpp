@@ -17,10 +17,6 @@
 namespace dlo::energy_model {
 namespace {
 
-/// Largest difference of the arc lengths of a grip and of the end of its span, divided by the rod
-/// length, by rounding.
-constexpr double same_hold = 1e-9;
-
 /// Tangent and material d1 of a shape at an arc length, in space.
 struct MaterialFrame {
   Eigen::Vector3d tangent, d1;
@@ -44,7 +40,7 @@ void rotate_material(PlacedShape& shape, double length, double arc_length,
 /// Returns d1 of the frame that the grip at an arc length prescribes; there must be such a grip.
 Eigen::Vector3d first_d1(const Problem& problem, double arc_length) {
   const auto grip = std::ranges::find_if(problem.grips, [&](const Grip& each) {
-    return each.frame && std::abs(each.at - arc_length) <= same_hold * problem.length;
+    return each.frame && std::abs(each.at - arc_length) <= same_arc_length_share * problem.length;
   });
   return held_frame(*grip, held_d1(problem, *grip)).col(0);
 }

@@ -25,8 +25,6 @@ namespace {
 constexpr std::size_t most_starts = 3;
 /// Maximum number of descents from an unstable shape.
 constexpr int most_departures = 4;
-/// Largest component of a polygon's tangents out of the plane that counts as planar.
-constexpr double planar_tangent_tolerance = 1e-6;
 /// Energy above the lowest, divided by 1 + energy, up to which a polygon with few segments is
 /// refined first: its energy has about this error, since segments cut the corners of bodies.
 constexpr double first_refined_energy = 0.5;
@@ -247,7 +245,6 @@ class ContactSearch {
 
   /// Descends from the best shape along its direction of negative curvature, also out of its plane.
   void leave_saddle() {
-    constexpr double mode_amplitude = 0.5;
     const SpanSolution& saddle = found_.best();
     const std::optional<NegativeCurvature> descent = negative_curvature(saddle);
     if (!descent || options_.deadline.passed()) return;

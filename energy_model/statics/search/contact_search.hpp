@@ -5,6 +5,9 @@
 
 namespace dlo::energy_model {
 
+/// Component of the tangents out of the plane up to which a shape counts as planar.
+inline constexpr double planar_tangent_tolerance = 1e-6;
+
 /// Solves a span with rigid obstacles: returns equilibria, best first. A polygon in equilibrium
 /// (PenaltyPolygon) determines the initial contacts. The rod's shape is then found with these
 /// contacts, whose ends are unknowns (FreeBoundary), and the contacts are updated until the rod is

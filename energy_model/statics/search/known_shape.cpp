@@ -74,7 +74,7 @@ TangentField field_of(const Equilibrium& start, const PlacedSpan& placed, double
 
 const TwistedPart* known_twist(const Equilibrium& known, const PlacedSpan& placed, double length) {
   for (const TwistedPart& part : known.twists) {
-    if (std::abs(part.begin - placed.start) < 1e-9 * length) return &part;
+    if (std::abs(part.begin - placed.start) < same_arc_length_share * length) return &part;
   }
   return nullptr;
 }

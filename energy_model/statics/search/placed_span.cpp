@@ -45,10 +45,9 @@ std::vector<SpanSolution> search_untwisted(const Span& span, const SpanOptions& 
   return solver(span, options, workspace);
 }
 
-/// Largest component of a tangent out of the plane [-] for an equilibrium in a plane, and for
-/// scattered points of a rod in a plane. The certificate shows whether the equilibrium near such
-/// points is unstable out of the plane; it is then left in space.
-constexpr double tilt_of_equilibrium = 1e-6;
+/// Largest component of a tangent out of the plane [-] for scattered points of a rod in a plane.
+/// The certificate shows whether the equilibrium near such points is unstable out of the plane; it
+/// is then left in space.
 constexpr double tilt_of_points = 0.1;
 
 /// Whether a shape leaves the plane of its span.
@@ -150,7 +149,7 @@ void add_polygon_minima(const PlacedSpan& placed, const Problem& problem, SpanOp
     options.start = {fields.field(i)};
     Span span = placed.span;
     const bool is_out =
-        span.planar && is_out_of_plane(span, options.start.field, tilt_of_equilibrium);
+        span.planar && is_out_of_plane(span, options.start.field, planar_tangent_tolerance);
     if (is_out && span.stays_in_plane()) continue;
     span.planar = span.planar && !is_out;
     (void)found.add(from_start(span, options, workspace), from_polygons);
@@ -160,9 +159,6 @@ void add_polygon_minima(const PlacedSpan& placed, const Problem& problem, SpanOp
 
 /// Largest rotation of a clamp at once that may stay on the same branch [rad].
 constexpr double largest_followed_rotation = 1;
-
-/// Number of coefficients for the writhe of a shape that is only a guess.
-constexpr int terms_of_guess = 24;
 
 constexpr const char* rotated_in_small_steps =
     "stable shapes without twist, rotated in small steps";
@@ -199,7 +195,7 @@ class TwistedSpan {
     const TangentField field = field_of(shape, placed_, problem_.length);
     Span span = placed_.span;
     span.planar = false;
-    SpanSolution guess = workspace_.empty_solution(span, terms_of_guess);
+    SpanSolution guess = workspace_.empty_solution(span, unknown_terms);
     guess.x = guess.model->fit(field(guess.model->nodes()));
     EndFrame frame = end_frame_for(guess);
     if (span.has_material_directors()) {
@@ -344,7 +340,7 @@ std::vector<SpanSolution> solve_untwisted(const PlacedSpan& placed, const Proble
   Found found(options);
   // After a failure no shape is known.
   if (options.only_follows() && !is_known) return as_list({});
-  const double tilt = options.only_descends() ? tilt_of_points : tilt_of_equilibrium;
+  const double tilt = options.only_descends() ? tilt_of_points : planar_tangent_tolerance;
   const bool leaves = placed.span.confined && shape != nullptr && !options.only_descends() &&
                       is_out_of_plane(placed.span, field_of(*shape, placed, problem.length), tilt);
   if (!options.wants_all() && (shape != nullptr || is_known) && !leaves) {

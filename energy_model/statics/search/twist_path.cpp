@@ -23,8 +23,8 @@ namespace {
 
 using std::numbers::pi;
 
-/// Size of the first step, which is the longest, and of the shortest continuation step: rotation of
-/// the end [rad].
+/// Longest continuation step, which is also the first one, and the shortest: rotation of the end
+/// [rad].
 constexpr double longest_rotation_step = 1.6;
 constexpr double least_rotation = 1e-4;
 /// Largest step after which a shape that has become unstable is accepted, to start a descent from
@@ -59,9 +59,6 @@ constexpr double fine_tolerance = 1e-6;
 
 /// Smallest number of coefficients of a path.
 constexpr int least_path_terms = 8;
-
-/// First number of coefficients of a twisted shape of which nothing else is known.
-constexpr int unknown_terms = 24;
 
 /// Returns the angle about `axis` from a to the component of b normal to it, in (-pi, pi].
 double angle_about(const Eigen::Vector3d& axis, const Eigen::Vector3d& a,

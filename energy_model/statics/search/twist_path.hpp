@@ -7,6 +7,9 @@
 
 namespace dlo::energy_model {
 
+/// Number of coefficients with which a shape is described first if only its tangents are known.
+inline constexpr int unknown_terms = 24;
+
 /// The end frame that prescribes a span's twist.
 struct EndFrame {
   Eigen::Vector3d d1;  ///< see Span::Twist::end_d1

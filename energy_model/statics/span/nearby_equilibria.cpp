@@ -102,6 +102,19 @@ SpanSolution from_given_start(LocalSolver& on) {
   return std::move(*other);
 }
 
+/// Returns the unit eigenvector of the eigenvalue of the reduced second variation that is nearest
+/// to zero, without rigid-body modes. Returns std::nullopt if the constraints leave no other
+/// direction.
+std::optional<Eigen::VectorXd> mode_nearest_zero(const SpanSolution& solution) {
+  SpanEnergy& model = *solution.model;
+  const SecondDerivatives at = second_derivatives(solution);
+  ReducedHessian reduced;
+  reduced.compute(at.hessian, at.jacobian);
+  const Eigen::Index free = rigid_body_modes(model.span(), solution.at_x()->tangents()).in_plane;
+  if (free >= model.size() - model.constraints()) return std::nullopt;
+  return eigenvector_by_magnitude(reduced, free);
+}
+
 }  // namespace
 
 std::optional<NegativeCurvature> negative_curvature(const SpanSolution& solution) {
@@ -135,19 +148,8 @@ std::optional<NegativeCurvature> negative_curvature(const SpanSolution& solution
   return out;
 }
 
-std::optional<Eigen::VectorXd> mode_nearest_zero(const SpanSolution& solution) {
-  SpanEnergy& model = *solution.model;
-  const SecondDerivatives at = second_derivatives(solution);
-  ReducedHessian reduced;
-  reduced.compute(at.hessian, at.jacobian);
-  const Eigen::Index free = rigid_body_modes(model.span(), solution.at_x()->tangents()).in_plane;
-  if (free >= model.size() - model.constraints()) return std::nullopt;
-  return eigenvector_by_magnitude(reduced, free);
-}
-
 std::optional<SpanSolution> leave_saddle(const SpanSolution& solution, const SpanOptions& options,
                                          SpanWorkspace& workspace) {
-  constexpr double mode_amplitude = 0.5;
   const auto descended = [&](const Span& span, const Eigen::VectorXd& disturbance) {
     LocalSolver local_solver(span, options, workspace);
     const std::shared_ptr<SpanEnergy> model = workspace.model(span, solution.terms);

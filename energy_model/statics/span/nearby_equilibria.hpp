@@ -9,6 +9,10 @@
 
 namespace dlo::energy_model {
 
+/// Length of the displacement along a unit mode with which a descent leaves an unstable
+/// equilibrium.
+inline constexpr double mode_amplitude = 0.5;
+
 /// Direction of negative curvature of an unstable equilibrium.
 struct NegativeCurvature {
   Span span;                  ///< the solution's; in space if a planar one leaves its plane
@@ -19,11 +23,6 @@ struct NegativeCurvature {
 /// otherwise out of the plane. Returns std::nullopt if no eigenvalue is negative in the directions
 /// that the span allows.
 [[nodiscard]] std::optional<NegativeCurvature> negative_curvature(const SpanSolution& solution);
-
-/// Returns the unit eigenvector of the eigenvalue of the reduced second variation that is nearest
-/// to zero, without rigid-body modes. Returns std::nullopt if the constraints leave no other
-/// direction.
-[[nodiscard]] std::optional<Eigen::VectorXd> mode_nearest_zero(const SpanSolution& solution);
 
 /// Descends from an unstable equilibrium along its direction of negative curvature to a minimum
 /// below, out of its plane if it is unstable only there. Returns std::nullopt if no such direction

@@ -185,8 +185,6 @@ class Refinement {
   const SpanTraits& traits_;
 };
 
-constexpr int most_contact_rounds = 16;
-
 /// Largest number of coefficients in rounds before the ends are nearly accurate; each element is
 /// short.
 constexpr int first_round_terms = 16;

@@ -7,6 +7,9 @@
 
 namespace dlo::energy_model {
 
+/// Maximum number of rounds that determine the contacts of a shape and their ends.
+inline constexpr int most_contact_rounds = 16;
+
 /// Raises the number of coefficients of an equilibrium until the last ones are negligible; if the
 /// affordable number is not enough, continues on an adapted mesh.
 /// @param solution  on the span of `on`, with its own elements

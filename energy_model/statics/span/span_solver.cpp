@@ -60,15 +60,9 @@ void bend_slightly(SpanSolution& solution, NewtonBuffers& buffers) {
 /// Number of initial guesses, in the order of their energy, that the search for the lowest minimum
 /// follows.
 constexpr std::size_t followed_starts = 2;
-/// Number of followed initial guesses for a rod with material directors, whose lowest shape is
-/// harder to predict.
-constexpr std::size_t followed_natural_starts = 6;
-/// Number of followed initial guesses with soft obstacles, which a rod may pass on either side.
-constexpr std::size_t followed_starts_beside_obstacles = 6;
-
-/// Largest difference of points, divided by the length, up to which loosely converged shapes count
-/// as one.
-constexpr double same_coarse_points = 10 * loose_step_tolerance;
+/// Number of followed initial guesses if the lowest shape is harder to predict: that of a rod with
+/// material directors, and that of a rod that may pass a soft obstacle on either side.
+constexpr std::size_t more_followed_starts = 6;
 
 /// Number of equilibria, in the order of discovery, of which the unstable ones start a descent.
 constexpr std::size_t most_saddles = 8;
@@ -161,8 +155,9 @@ class Search {
       if (!coarse.empty()) coarse.back().factor.reset();
       SpanSolution solution = on_.from_start(starts[i]);
       found_.add_evaluations(std::exchange(solution.evaluations, 0));
+      // Points of loosely converged shapes differ more than those of converged ones.
       const bool known = std::ranges::any_of(coarse, [&](const auto& other) {
-        return other.is_equilibrium() && is_same_shape(solution, other, same_coarse_points);
+        return other.is_equilibrium() && is_same_shape(solution, other, 10 * loose_step_tolerance);
       });
       if (!known) coarse.push_back(std::move(solution));
       if (i + 1 < first) continue;
@@ -204,8 +199,8 @@ class Search {
 
   /// Number of starts that are followed in any case.
   [[nodiscard]] std::size_t followed_start_count() const {
-    if (span_.has_material_directors()) return followed_natural_starts;
-    return span_.soft_obstacles.empty() ? followed_starts : followed_starts_beside_obstacles;
+    const bool is_predictable = !span_.has_material_directors() && span_.soft_obstacles.empty();
+    return is_predictable ? followed_starts : more_followed_starts;
   }
 
   [[nodiscard]] std::vector<Start> starts() const {
@@ -308,18 +303,15 @@ class Search {
     for (const std::string& what : own.omitted()) options_.log->add_omitted(what);
   }
 
-  /// Certifies and adds a refined solution. @param strategy  name in the log; empty: not logged
+  /// Certifies and adds a refined solution. Of a solution that does not belong to the homotopy
+  /// class of the clamps (belongs_to_class()) only the evaluations count.
+  /// @param strategy  name in the log; empty: not logged
   bool add(SpanSolution solution, const std::string& strategy = {}) {
-    if (!is_of_span_class(solution)) return false;
+    if (span_.twist && !belongs_to_class(solution, span_.twist->turns)) {
+      found_.add_evaluations(solution.evaluations);
+      return false;
+    }
     return found_.add(certified_solution(std::move(solution), options_, workspace_), strategy);
-  }
-
-  /// Whether the solution belongs to the homotopy class of the clamps (belongs_to_class()); counts
-  /// the evaluations of others.
-  [[nodiscard]] bool is_of_span_class(SpanSolution& solution) {
-    if (!span_.twist || belongs_to_class(solution, span_.twist->turns)) return true;
-    found_.add_evaluations(std::exchange(solution.evaluations, 0));
-    return false;
   }
 
   /// Descends from the unstable equilibria, including those that such a descent finds.
