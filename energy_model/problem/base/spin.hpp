@@ -8,6 +8,12 @@
 
 namespace dlo::energy_model {
 
+/// Returns the part of a vector across a unit vector.
+inline Eigen::Vector3d part_across(const Eigen::Vector3d& vector,
+                                   const Eigen::Vector3d& direction) {
+  return vector - vector.dot(direction) * direction;
+}
+
 /// Returns the matrix whose product with w is v x w.
 inline Eigen::Matrix3d cross_matrix(const Eigen::Vector3d& v) {
   Eigen::Matrix3d m;

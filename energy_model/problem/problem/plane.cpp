@@ -4,15 +4,12 @@
 #include <algorithm>
 #include <cmath>
 
+#include "base/spin.hpp"
+
 namespace dlo::energy_model {
 namespace {
 
 constexpr double planar_tolerance = 1e-12;
-
-/// Returns the part of `vector` across the unit vector `direction`.
-Eigen::Vector3d across(const Eigen::Vector3d& vector, const Eigen::Vector3d& direction) {
-  return vector - vector.dot(direction) * direction;
-}
 
 }  // namespace
 
@@ -25,16 +22,16 @@ std::optional<Plane> find_plane(const Eigen::Vector3d& origin, const Eigen::Vect
   double largest = 0;
   for (const Eigen::Vector3d& force : forces) {
     largest = std::max(largest, force.norm());
-    const Eigen::Vector3d part = across(force, plane.x);
+    const Eigen::Vector3d part = part_across(force, plane.x);
     if (part.norm() > furthest.norm()) furthest = part;
   }
   if (furthest.norm() <= planar_tolerance * largest || largest == 0) {
-    furthest = across(Eigen::Vector3d::UnitX(), plane.x);
-    if (furthest.norm() < 1e-6) furthest = across(Eigen::Vector3d::UnitY(), plane.x);
+    furthest = part_across(Eigen::Vector3d::UnitX(), plane.x);
+    if (furthest.norm() < 1e-6) furthest = part_across(Eigen::Vector3d::UnitY(), plane.x);
   }
   plane.y = furthest.normalized();
   // A second projection makes x and y orthogonal to rounding even for a nearly parallel force.
-  plane.y = across(plane.y, plane.x).normalized();
+  plane.y = part_across(plane.y, plane.x).normalized();
   const Eigen::Vector3d normal = plane.x.cross(plane.y);
   for (const Eigen::Vector3d& force : forces) {
     if (std::abs(normal.dot(force)) > planar_tolerance * largest) return std::nullopt;

@@ -23,10 +23,6 @@ double wrap_to_pi(double angle) {
   return least < rounding - pi ? pi : least;
 }
 
-Eigen::Vector3d normal_direction(const Eigen::Vector3d& v, const Eigen::Vector3d& direction) {
-  return (v - v.dot(direction) * direction).normalized();
-}
-
 /// Returns the shortest rotation of a clamp's direction into another's; std::nullopt if they are
 /// opposite and along the chord (shortest_rotation()).
 std::optional<Eigen::Quaterniond> rotation_between(const Grip& from, const Grip& to,
@@ -58,7 +54,7 @@ const Grip& reference_clamp(const Problem& problem) {
 /// Returns the d1 of reference_clamp() before its roll.
 Eigen::Vector3d reference_d1(const Problem& problem, const Grip& clamp) {
   const Eigen::Vector3d direction = clamp.direction->normalized();
-  if (clamp.frame && clamp.frame->d1) return normal_direction(*clamp.frame->d1, direction);
+  if (clamp.frame && clamp.frame->d1) return part_across(*clamp.frame->d1, direction).normalized();
   if (!has_material_directors(problem)) return direction.unitOrthogonal();
   const double roll = clamp.frame ? clamp.frame->roll : 0;
   return Eigen::AngleAxisd(-roll, direction) * first_frame(problem).col(0);
@@ -69,7 +65,8 @@ Eigen::Vector3d reference_d1(const Problem& problem, const Grip& clamp) {
 Eigen::Vector3d held_d1(const Problem& problem, const Grip& grip) {
   require(grip.direction && grip.frame, "held_d1", "arc length of a grip without a frame", grip.at,
           "the arc length of a clamp with a frame");
-  if (grip.frame->d1) return normal_direction(*grip.frame->d1, grip.direction->normalized());
+  if (grip.frame->d1)
+    return part_across(*grip.frame->d1, grip.direction->normalized()).normalized();
   const Grip& first = reference_clamp(problem);
   Eigen::Vector3d d1 = reference_d1(problem, first);
   if (first.at == grip.at) return d1;

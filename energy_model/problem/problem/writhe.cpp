@@ -40,11 +40,8 @@ double crossing_angle(const Eigen::Vector3d& a, const Eigen::Vector3d& b, const 
 /// `distance`, farther than `distance` from its start.
 bool passes(const Eigen::Vector3d& from, const Eigen::Vector3d& direction, const Eigen::Vector3d& a,
             const Eigen::Vector3d& b, double distance) {
-  const auto across = [&](const Eigen::Vector3d& v) -> Eigen::Vector3d {
-    return v - v.dot(direction) * direction;
-  };
-  const Eigen::Vector3d to_a = across(a - from);
-  const Eigen::Vector3d side = across(b - a);
+  const Eigen::Vector3d to_a = part_across(a - from, direction);
+  const Eigen::Vector3d side = part_across(b - a, direction);
   const double squared = side.squaredNorm();
   const double t = squared > 0 ? std::clamp(-to_a.dot(side) / squared, 0.0, 1.0) : 0.0;
   const double along = (a + t * (b - a) - from).dot(direction);

@@ -254,9 +254,8 @@ int first_terms(double load, double longest_element) {
 
 int terms_needed(const SpanEnergy& model, const Eigen::VectorXd& x, double tolerance, int least) {
   int terms = model.terms();
-  while (terms > least) {
-    const double K = terms - 1;
-    if (!(model.truncation(x, terms - 1) < tolerance * 4 * K * K)) break;
+  while (terms > least &&
+         model.truncation(x, terms - 1) < allowed_truncation(tolerance, terms - 1)) {
     --terms;
   }
   return terms;
@@ -265,7 +264,7 @@ int terms_needed(const SpanEnergy& model, const Eigen::VectorXd& x, double toler
 int terms_for_buckling_modes(const SpanSolution& solution) {
   const SpanEnergy& model = *solution.model;
   const double torque = model.twisting_torque(solution.x, solution.multipliers);
-  return first_terms(torque * torque, model.longest_element());
+  return first_terms(torque * torque, longest_element(elements_of(model.span())));
 }
 
 std::vector<double> contact_ends(const SpanSolution& solution) {

@@ -19,9 +19,15 @@ namespace dlo::energy_model {
 /// length 1. A softer rod has elements of their own for the layers at its clamps.
 [[nodiscard]] int first_terms(double load, double longest_element);
 
+/// Returns the truncation indicator (SpanEnergy::truncation()) up to which the last of K
+/// coefficients contribute at most `tolerance` to positions. The last one contributes an angle of
+/// a_K / (2K), and its effect on positions is smaller by this factor again.
+[[nodiscard]] inline double allowed_truncation(double tolerance, double K) {
+  return tolerance * 4 * K * K;
+}
+
 /// Returns how many coefficients of a shape are needed so that the dropped ones contribute at most
-/// `tolerance`. The last of K coefficients contributes an angle of a_K / (2K), and its effect on
-/// positions is smaller by this factor again.
+/// `tolerance` (allowed_truncation()).
 /// @param least  number of coefficients kept in any case, if there are as many
 [[nodiscard]] int terms_needed(const SpanEnergy& model, const Eigen::VectorXd& x, double tolerance,
                                int least);

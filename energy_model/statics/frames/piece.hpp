@@ -29,6 +29,13 @@ struct Element {
   }
 };
 
+/// Returns the length of the longest element.
+[[nodiscard]] inline double longest_element(const std::vector<Element>& elements) {
+  double longest = 0;
+  for (const Element& element : elements) longest = std::max(longest, element.length);
+  return longest;
+}
+
 /// Number of elements before an arc length at which an element begins or ends.
 [[nodiscard]] inline Eigen::Index elements_before(const std::vector<Element>& elements, double s) {
   return std::ranges::count_if(

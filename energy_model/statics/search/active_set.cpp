@@ -136,10 +136,9 @@ SpanSolution ActiveSet::newton_from(const Span& span, const TangentField& near) 
 
 int ActiveSet::terms_of_load(const Span& span) {
   constexpr int least_count = 12;  // next to a kink
-  double longest = 0;
   const std::vector<Element> elements = elements_of(span);
-  for (const Element& element : elements) longest = std::max(longest, element.length);
-  const int count = std::max(least_count, first_terms(span.total_load(), longest));
+  const int count =
+      std::max(least_count, first_terms(span.total_load(), longest_element(elements)));
   // Many elements are short and need fewer coefficients while contacts change.
   const int unknowns = count * static_cast<int>(elements.size()) * (span.planar ? 1 : 2);
   return unknowns > many_unknowns ? std::max(least_count, count / 2) : count;

@@ -136,13 +136,6 @@ class TwistPath {
     return terms_needed(*solution.model, solution.x, tolerance_, least_path_terms);
   }
 
-  /// Returns the truncation indicator that is acceptable. The last of K coefficients contributes an
-  /// angle of a_K / (2K); its effect on positions is smaller by this factor again.
-  [[nodiscard]] double allowed_truncation(int terms) const {
-    const double K = terms;
-    return tolerance_ * 4 * K * K;
-  }
-
   /// Rotates the end's clamp by an angle relative to the untwisted rod's end frame.
   void rotate_clamp(SpanSolution& solution, double angle) const {
     const Eigen::AngleAxisd about(angle, *span_.end_direction);
@@ -216,8 +209,9 @@ class TwistPath {
   /// Adds coefficients if the shape needs them. @return whether any were added
   bool resolve() {
     const bool affordable = here_.terms < max_terms && here_.model->size() * 5 / 4 < most_unknowns;
-    const bool resolved = here_.model->truncation(here_.x) < allowed_truncation(here_.terms) &&
-                          here_.terms >= terms_for_buckling_modes(here_);
+    const bool resolved =
+        here_.model->truncation(here_.x) < allowed_truncation(tolerance_, here_.terms) &&
+        here_.terms >= terms_for_buckling_modes(here_);
     if (resolved || !affordable) return false;
     here_ = workspace_.with_terms(here_,
                                   std::min(max_terms, here_.terms + std::max(2, here_.terms / 4)));

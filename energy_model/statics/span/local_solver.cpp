@@ -69,9 +69,7 @@ SpanTraits::SpanTraits(const Span& span)
     longest_element = longest_without_load(span);
     return;
   }
-  for (const Element& element : elements_of(span)) {
-    longest_element = std::max(longest_element, element.length);
-  }
+  longest_element = energy_model::longest_element(elements_of(span));
   if (!span.has_material_directors() && !span.has_couples()) return;
   // The rotation of the stress-free shape, and the one by couples, have to be resolved as well.
   const double curvature = span.natural.largest() + curvature_bound_of_couples(span);

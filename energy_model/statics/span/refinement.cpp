@@ -116,7 +116,7 @@ class Refinement {
     double all = K;
     // The size that counts as small enough grows with the number of coefficients.
     for (int i = 0; i < 2; ++i) {
-      all = K + std::log(now / (options_.tolerance * 4 * all * all)) / rate;
+      all = K + std::log(now / allowed_truncation(options_.tolerance, all)) / rate;
       if (!(all > K)) return K;
     }
     return static_cast<int>(std::ceil(std::min(term_reserve_factor * all, 1.0 * max_terms)));
@@ -128,7 +128,7 @@ class Refinement {
                                    const TruncationIndicator& before) const {
     const int K = solution.terms;
     const double now = solution.model->truncation(solution.x);
-    const double wanted = options_.tolerance * 4 * K * K;
+    const double wanted = allowed_truncation(options_.tolerance, K);
     int more = std::max(2, K / 4);
     if (before.terms > 0 && now < before.size && now > wanted) {
       const double rate = std::log(before.size / now) / (K - before.terms);
@@ -158,10 +158,9 @@ class Refinement {
   [[nodiscard]] bool resolved(const SpanSolution& solution) {
     if (span_.is_plain_cantilever() && solution.terms < on_.terms()) return false;
     if (span_.twist && solution.terms < terms_for_buckling_modes(solution)) return false;
-    const double K = solution.terms;
-    // The last coefficient contributes an angle of a_K / (2K); its effect on positions is smaller
-    // by this factor again.
-    if (solution.model->truncation(solution.x) > options_.tolerance * 4 * K * K) return false;
+    if (solution.model->truncation(solution.x) >
+        allowed_truncation(options_.tolerance, solution.terms))
+      return false;
     if (span_.is_plain_cantilever()) return true;
     return holds_with_more_terms(solution);
   }

@@ -305,12 +305,6 @@ Eigen::VectorXd SpanEnergy::prolong_multipliers(const SpanEnergy& other,
   return prolonged;
 }
 
-double SpanEnergy::longest_element() const {
-  double longest = 0;
-  for (const Element& element : elements_) longest = std::max(longest, element.length);
-  return longest;
-}
-
 double SpanEnergy::truncation(const Eigen::VectorXd& x, int terms) const {
   const Eigen::Index last = std::min(terms, 2);
   double largest = 0;

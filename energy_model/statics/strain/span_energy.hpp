@@ -54,7 +54,6 @@ class SpanEnergy {
   }
   [[nodiscard]] int terms() const { return static_cast<int>(unknowns_.terms); }
   [[nodiscard]] int elements() const { return static_cast<int>(elements_.size()); }
-  [[nodiscard]] double longest_element() const;
 
   /// Returns the identifier of the model's present values. It changes with reset() and
   /// turn_end_clamp(), and in the plane with fit() and prolong(), which set the clamps' angles.
