@@ -27,12 +27,11 @@ constexpr double rounding_length = 1e-9;
 
 /// An interval of a span between two neighbouring grips, or from the outermost grip to a free end.
 struct PathInterval {
-  double from_s = 0;       ///< arc length of the grip at which a path past a body begins
-  double length = 0;       ///< length of this part of the rod
-  double sense = 1;        ///< 1 if arc lengths increase along the path, else -1
-  Eigen::Vector3d from;    ///< position of the grip at from_s
-  bool is_closed = false;  ///< whether another grip is at the other end
-  Eigen::Vector3d to;      ///< position of the other grip, if there is one
+  double from_s = 0;                  ///< arc length of the grip at which a path past a body begins
+  double length = 0;                  ///< length of this part of the rod
+  double sense = 1;                   ///< 1 if arc lengths increase along the path, else -1
+  Eigen::Vector3d from;               ///< position of the grip at from_s
+  std::optional<Eigen::Vector3d> to;  ///< position of the grip at the other end; empty: free end
 };
 
 /// Points that the rod passes, in order from PathInterval::from.
@@ -45,16 +44,16 @@ std::vector<PathInterval> path_intervals(const Span& span) {
   const double shortest = rounding_length * span.length;
   std::vector<PathInterval> reaches;
   for (std::size_t i = 0; i + 1 < grips.size(); ++i) {
-    reaches.push_back({grips[i].at, grips[i + 1].at - grips[i].at, 1, grips[i].offset, true,
-                       grips[i + 1].offset});
+    reaches.push_back(
+        {grips[i].at, grips[i + 1].at - grips[i].at, 1, grips[i].offset, grips[i + 1].offset});
   }
   const Span::Hold& first = grips.front();
   const Span::Hold& last = grips.back();
   if (span.length - last.at > shortest) {
-    reaches.push_back({last.at, span.length - last.at, 1, last.offset, false, last.offset});
+    reaches.push_back({last.at, span.length - last.at, 1, last.offset, std::nullopt});
   }
   if (first.at > shortest) {
-    reaches.push_back({first.at, first.at, -1, first.offset, false, first.offset});
+    reaches.push_back({first.at, first.at, -1, first.offset, std::nullopt});
   }
   return reaches;
 }
@@ -115,9 +114,9 @@ std::optional<Eigen::Vector3d> side_of_path(const Span& span, const obstacle::Bo
 std::optional<PathPoints> path_past_body(const Span& span, const obstacle::Body& body,
                                          const PathInterval& reach, const Eigen::Vector3d& from,
                                          double sense) {
-  const Eigen::Vector3d near = reach.is_closed ? (reach.from + reach.to) / 2 : reach.from;
+  const Eigen::Vector3d near = reach.to ? (reach.from + *reach.to) / 2 : reach.from;
   const Eigen::Vector3d middle = body_middle(body, near);
-  Eigen::Vector3d along = reach.is_closed ? reach.to - reach.from : middle - from;
+  Eigen::Vector3d along = reach.to ? *reach.to - reach.from : middle - from;
   if (!(along.norm() > rounding_length * span.length)) along = middle - from;
   if (!(along.norm() > rounding_length * span.length)) return std::nullopt;
   along.normalize();
@@ -125,7 +124,7 @@ std::optional<PathPoints> path_past_body(const Span& span, const obstacle::Body&
   if (!side) return std::nullopt;
   const Eigen::Vector3d side_point =
       middle + sense * passing_distance * half_size(body, *side) * *side;
-  if (reach.is_closed) return PathPoints{side_point};
+  if (reach.to) return PathPoints{side_point};
   return PathPoints{side_point, side_point + half_size(body, along) * along};
 }
 
@@ -140,9 +139,9 @@ std::optional<Span> pinned_on_path(const Span& span, const PathInterval& reach,
     at.push_back(sum);
     last = point;
   }
-  const double whole = reach.is_closed ? sum + (reach.to - last).norm() : sum * path_slack;
+  const double whole = reach.to ? sum + (*reach.to - last).norm() : sum * path_slack;
   if (!(whole < reach.length)) return std::nullopt;
-  const double per_path = reach.is_closed ? reach.length / whole : path_slack;
+  const double per_path = reach.to ? reach.length / whole : path_slack;
   Span pinned = span;
   for (std::size_t i = 0; i < path.size(); ++i) {
     pinned.holds.push_back(

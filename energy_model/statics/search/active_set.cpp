@@ -64,6 +64,24 @@ SpanSolution solve_near_known(const Span& span, const SpanOptions& options,
   return solution;
 }
 
+/// Fixes contacts at points: where an obstacle would have to pull, there may be no equilibrium with
+/// a sliding contact but one with a fixed contact. A very short part in contact becomes a point.
+/// @return whether any sliding contact at a point has been fixed
+[[nodiscard]] bool fix_contact_points(Span& span) {
+  bool any = false;
+  for (Span::Contact& contact : span.contacts) {
+    const bool inside = contact.begin > 0 && contact.end < span.length;
+    const double middle = (contact.begin + contact.end) / 2;
+    if (contact.lies() && inside &&
+        contact.end - contact.begin < shortest_contact_part * span.length) {
+      contact.begin = contact.end = middle;
+    }
+    any = any || (contact.slides && !contact.lies());
+    contact.slides = false;
+  }
+  return any;
+}
+
 }  // namespace
 
 SpanSolution ActiveSet::solve(Span span, TangentField near) {
@@ -198,21 +216,6 @@ SpanSolution ActiveSet::finished(SpanSolution solution) {
 SpanSolution ActiveSet::with_evaluations(SpanSolution solution) {
   solution.evaluations = std::exchange(spent_, 0);
   return solution;
-}
-
-bool fix_contact_points(Span& span) {
-  bool any = false;
-  for (Span::Contact& contact : span.contacts) {
-    const bool inside = contact.begin > 0 && contact.end < span.length;
-    const double middle = (contact.begin + contact.end) / 2;
-    if (contact.lies() && inside &&
-        contact.end - contact.begin < shortest_contact_part * span.length) {
-      contact.begin = contact.end = middle;
-    }
-    any = any || (contact.slides && !contact.lies());
-    contact.slides = false;
-  }
-  return any;
 }
 
 std::optional<std::vector<Span::Contact>> moved_contacts(const Span& span,

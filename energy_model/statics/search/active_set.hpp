@@ -54,11 +54,6 @@ class ActiveSet {
   int spent_ = 0;
 };
 
-/// Fixes contacts at points: where an obstacle would have to pull, there may be no equilibrium with
-/// a sliding contact but one with a fixed contact. A very short part in contact becomes a point.
-/// @return whether any sliding contact at a point has been fixed
-[[nodiscard]] bool fix_contact_points(Span& span);
-
 /// Returns known contacts with the present positions of their obstacles; std::nullopt if an
 /// obstacle has disappeared.
 [[nodiscard]] std::optional<std::vector<Span::Contact>> moved_contacts(

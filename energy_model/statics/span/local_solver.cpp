@@ -53,8 +53,7 @@ constexpr int layer_terms = 20;
 
 }  // namespace
 
-SpanTraits::SpanTraits(const Span& span)
-    : load(span.total_load()), fields(fields_of(span)), adapted(!span.cuts.empty()) {
+SpanTraits::SpanTraits(const Span& span) : load(span.total_load()), adapted(!span.cuts.empty()) {
   for (const Segment& segment : segments_of(span)) {
     if (!segment.taut()) continue;
     taut = true;
@@ -105,13 +104,9 @@ int LocalSolver::terms() const {
 }
 
 int LocalSolver::coarse_terms() const {
-  if (options_.terms > 0) return options_.terms;
-  if (terms() <= few_terms) return terms();
+  if (options_.terms > 0 || terms() <= few_terms) return terms();
   int coarse = terms() / 2;
-  if (!span_.holds.empty()) {
-    const int elements = static_cast<int>(elements_of(span_).size());
-    coarse = std::min(coarse, coarse_unknowns / (traits_.fields * elements));
-  }
+  if (!span_.holds.empty()) coarse = std::min(coarse, coarse_unknowns / unknowns_per_term(span_));
   return std::max(least_terms, coarse);
 }
 

@@ -20,8 +20,7 @@ struct SpanTraits {
     return span.planar ? 1 : span.has_material_directors() ? 3 : 2;
   }
 
-  double load;  ///< weight and loads [EI/l^2]
-  int fields;
+  double load;   ///< weight and loads [EI/l^2]
   bool adapted;  ///< whether the mesh is adapted to a known shape
   double longest_element = 0;
   int natural_terms = 0;  ///< number of coefficients needed for natural strains and couples

@@ -44,9 +44,9 @@ class Refinement {
     const bool touches = !span_.contacts.empty();
     // Contacts divide the rod into short elements; it may still need the coefficients of its load.
     const int least = touches ? std::max(32, on_.terms()) : 32;
-    const int affordable =
-        std::min(std::max(least, unknowns / (traits_.fields * solution.model->elements())),
-                 std::max(solution.terms, affordable_terms(solution.model->span())));
+    const int affordable = std::min(
+        std::max(least, unknowns / (SpanTraits::fields_of(span_) * solution.model->elements())),
+        std::max(solution.terms, affordable_terms(solution.model->span())));
     // A shape that is not smooth between the ends of contact has passed through a body's middle.
     constexpr int most_between_contact_ends = 40;
     const int most_terms =

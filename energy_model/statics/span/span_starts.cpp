@@ -224,12 +224,6 @@ std::optional<TangentField> field_on_obstacle(const Span& span, const Span::Obst
   });
 }
 
-/// Returns the arc lengths at which a start is compared with the prescribed frame at the end.
-Eigen::VectorXd comparison_arc_lengths(const Span& span) {
-  constexpr Eigen::Index sample_count = 257;
-  return Eigen::VectorXd::LinSpaced(sample_count, 0, span.length);
-}
-
 /// Returns the angle equal to `angle` modulo 4 pi that is nearest to zero, and the next one on the
 /// other side.
 std::array<double, 2> angles_of_class(double angle) {
@@ -240,7 +234,7 @@ std::array<double, 2> angles_of_class(double angle) {
 /// natural_fields() with a prescribed frame at the end.
 std::vector<TangentField> fields_with_end_frame(const Span& span) {
   std::vector<TangentField> fields;
-  const Eigen::VectorXd s = comparison_arc_lengths(span);
+  const Eigen::VectorXd s = Eigen::VectorXd::LinSpaced(257, 0, span.length);
   const Eigen::Vector3d chord = span.holds.back().offset / span.length;
   for (const TangentField& plain : start_fields(span)) {
     Eigen::Matrix3Xd tangents(3, s.size() + 2);
@@ -258,9 +252,9 @@ std::vector<TangentField> fields_with_end_frame(const Span& span) {
 
 }  // namespace
 
-TangentField soft_limit_field(const Span& span) {
-  return field([&span](double s) {
-    return pendulum(span, *span.start_direction, total_force(span, 0), s, 0);
+TangentField soft_limit_field(const Span& span, int turns) {
+  return field([&span, turns](double s) {
+    return pendulum(span, *span.start_direction, total_force(span, 0), s, turns);
   });
 }
 
@@ -269,19 +263,15 @@ TangentField arch_field(const Span& span) { return field(GrippedField(span, {}))
 std::vector<TangentField> start_fields(const Span& span) {
   std::vector<TangentField> fields;
   if (span.holds.empty() && span.start_direction) {
-    for (const Span::SoftObstacle& obstacle : span.soft_obstacles) {
-      if (std::optional<TangentField> lying = field_on_obstacle(span, obstacle))
-        fields.push_back(*lying);
-    }
-    for (const Span::Obstacle& obstacle : span.rigid_obstacles) {
-      if (std::optional<TangentField> lying = field_on_obstacle(span, obstacle))
-        fields.push_back(*lying);
-    }
+    const auto add_lying = [&](const Span::Obstacle& obstacle) {
+      const std::optional<TangentField> lying = field_on_obstacle(span, obstacle);
+      if (lying) fields.push_back(*lying);
+    };
+    std::ranges::for_each(span.soft_obstacles, add_lying);
+    std::ranges::for_each(span.rigid_obstacles, add_lying);
     fields.push_back(soft_limit_field(span));
     fields.push_back(field([&span](double) { return *span.start_direction; }));
-    fields.push_back(field([&span](double s) {
-      return pendulum(span, *span.start_direction, total_force(span, 0), s, 1);
-    }));
+    fields.push_back(soft_limit_field(span, 1));
     return fields;
   }
   for (const bool s_shape : {false, true}) {

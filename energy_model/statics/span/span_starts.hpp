@@ -16,9 +16,10 @@ namespace dlo::energy_model {
 [[nodiscard]] std::vector<TangentField> start_fields(const Span& span);
 
 /// Returns the pendulum's profile 4 atan(tan(psi/4) exp(-sqrt(n) s)) from a clamp towards the sum n
-/// of weight and loads by the shorter way: the limit shape of a soft rod.
-/// @param span  has to outlive the result
-[[nodiscard]] TangentField soft_limit_field(const Span& span);
+/// of weight and loads: the limit shape of a soft rod.
+/// @param span   has to outlive the result
+/// @param turns  0: by the shorter way; 1: by the longer way
+[[nodiscard]] TangentField soft_limit_field(const Span& span, int turns = 0);
 
 /// Returns a shape through the anchor and the other grips of a span: arches of the right slack that
 /// hang in the direction of the weight, and beyond the outermost grips the pendulum's profile.
