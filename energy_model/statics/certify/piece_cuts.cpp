@@ -291,7 +291,7 @@ std::vector<RidgeCrossing> ridge_crossings(const SpanSolution& solution) {
     const double offset = closest_contact_ends * span.length;
     if (!(s > offset && s < span.length - offset) || has_thin_core(obstacle.body)) continue;
     const std::vector<double> at = {s - offset, s + offset};
-    const SpanSamples samples = shape.sample(at);
+    const Samples samples = shape.sample(at);
     const obstacle::Gap before = obstacle.body.gap(samples.points.col(0));
     const obstacle::Gap after = obstacle.body.gap(samples.points.col(1));
     const Eigen::Vector3d jump = after.gradient - before.gradient;

@@ -172,7 +172,7 @@ double highest(const SpanShape& shape, const Span::Obstacle& obstacle, double fr
   constexpr int samples = 16;
   std::vector<double> s;
   for (int i = 1; i < samples; ++i) s.push_back(from + (to - from) * i / samples);
-  const SpanSamples inside = shape.sample(s);
+  const Samples inside = shape.sample(s);
   return obstacle.body.clearances(inside.points).maxCoeff();
 }
 
@@ -321,7 +321,7 @@ class Contacts {
 
 }  // namespace
 
-Clearance clearance_at(const obstacle::Body& body, const SpanSamples& samples, Eigen::Index i) {
+Clearance clearance_at(const obstacle::Body& body, const Samples& samples, Eigen::Index i) {
   const obstacle::Gap gap = body.gap(samples.points.col(i));
   const Eigen::Vector3d t = samples.tangents.col(i);
   return {gap.value, gap.gradient.dot(t),
@@ -351,7 +351,7 @@ std::vector<GapMinimum> gap_minima(const Span& span, const SpanShape& shape, dou
   const double most = below + (static_cast<double>(coarse_stride) / 2 + 3) * s[1];
   std::vector<std::size_t> evaluated =
       points_near_obstacle(s, coarse_stride, most, [&](const std::vector<double>& coarse) {
-        const SpanSamples samples = shape.sample(coarse);
+        const Samples samples = shape.sample(coarse);
         Eigen::VectorXd least = Eigen::VectorXd::Constant(samples.points.cols(), not_evaluated);
         for (const Span::Obstacle& obstacle : span.rigid_obstacles) {
           least = least.cwiseMin(obstacle.body.clearances(samples.points));
@@ -362,7 +362,7 @@ std::vector<GapMinimum> gap_minima(const Span& span, const SpanShape& shape, dou
   std::vector<double> near;
   near.reserve(evaluated.size());
   for (const std::size_t i : evaluated) near.push_back(s[i]);
-  const SpanSamples grid = shape.sample(near);
+  const Samples grid = shape.sample(near);
   const double h = s[1];
   const double bent = grid.curvature.colwise().norm().maxCoeff();
   std::vector<GapMinimum> found;

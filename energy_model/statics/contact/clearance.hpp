@@ -19,7 +19,7 @@ struct Clearance {
   double slope = 0;
   double rate = 0;  ///< second derivative by the arc length
 };
-[[nodiscard]] Clearance clearance_at(const obstacle::Body& body, const SpanSamples& samples,
+[[nodiscard]] Clearance clearance_at(const obstacle::Body& body, const Samples& samples,
                                      Eigen::Index i);
 
 /// Returns indices of points of a grid in ascending order: all points of every coarse interval

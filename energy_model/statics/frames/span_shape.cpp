@@ -44,18 +44,17 @@ class Sampler {
     }
   }
 
-  void evaluate_at(double at, Eigen::Ref<Eigen::Vector3d> point,
-                   Eigen::Ref<Eigen::Vector3d> tangent, Eigen::Ref<Eigen::Vector3d> curvature,
-                   Eigen::Matrix3d& frame) {
+  /// Computes the sample number i, at an arc length.
+  void evaluate_at(double at, Eigen::Index i, Samples& samples) {
     std::size_t e = 0;
     while (e + 1 < elements_.size() && at > elements_[e].element.end()) ++e;
     const PlacedElement& placed = elements_[e];
     const double length = placed.element.length;
     legendre(std::clamp((at - placed.element.begin) / length, 0.0, 1.0), values_, integrals_);
-    point = placed.point + length * (placed.tangent * integrals_) - anchor_;
+    samples.points.col(i) = placed.point + length * (placed.tangent * integrals_) - anchor_;
     const auto values = values_.head(shape_.terms);
     if (shape_.planar) {
-      const auto theta = coefficients(shape_.theta, 0, e);
+      const auto theta = coefficients(0, e);
       double angle =
           placed.theta + placed.element.angle(0) * integrals_.head(shape_.terms).dot(theta);
       double rate = placed.element.strain(0) * values.dot(theta);
@@ -63,33 +62,34 @@ class Sampler {
         angle += shape_.natural.integral(at).x();
         rate += shape_.natural.at(at).x();
       }
-      tangent << std::cos(angle), std::sin(angle), 0;
-      curvature << -rate * std::sin(angle), rate * std::cos(angle), 0;
+      samples.tangents.col(i) << std::cos(angle), std::sin(angle), 0;
+      samples.curvature.col(i) << -rate * std::sin(angle), rate * std::cos(angle), 0;
+      samples.d1.col(i) = Eigen::Vector3d::UnitZ();  // Span::d1()
       return;
     }
     const Eigen::Vector4d q = placed.frame * values_;
-    frame = Eigen::Quaterniond(q[0], q[1], q[2], q[3]).normalized().toRotationMatrix();
-    tangent = frame.col(2);
-    const Eigen::Index second = shape_.strains.size() / (shape_.natural.empty() ? 2 : 3);
-    double u1 =
-        placed.element.strain(0) * values.dot(coefficients(shape_.strains, first_strain(), e));
-    double u2 = placed.element.strain(1) *
-                values.dot(coefficients(shape_.strains, second + first_strain(), e));
+    const Eigen::Matrix3d frame =
+        Eigen::Quaterniond(q[0], q[1], q[2], q[3]).normalized().toRotationMatrix();
+    samples.d1.col(i) = frame.col(0);
+    samples.tangents.col(i) = frame.col(2);
+    double u1 = placed.element.strain(0) * values.dot(coefficients(0, e));
+    double u2 = placed.element.strain(1) * values.dot(coefficients(1, e));
     if (!shape_.natural.empty()) {
       const Eigen::Vector3d natural = shape_.natural.at(at);
       u1 += natural.x();
       u2 += natural.y();
     }
-    curvature = u2 * frame.col(0) - u1 * frame.col(1);
+    samples.curvature.col(i) = u2 * frame.col(0) - u1 * frame.col(1);
   }
 
  private:
-  [[nodiscard]] Eigen::Index first_strain() const { return shape_.free_start ? 1 : 0; }
-
-  [[nodiscard]] Eigen::VectorXd::ConstSegmentReturnType coefficients(const Eigen::VectorXd& field,
-                                                                     Eigen::Index first,
+  /// Returns the coefficients of a strain on an element.
+  [[nodiscard]] Eigen::VectorXd::ConstSegmentReturnType coefficients(Eigen::Index field,
                                                                      std::size_t e) const {
-    return field.segment(first + static_cast<Eigen::Index>(e) * shape_.terms, shape_.terms);
+    const Eigen::Index columns = shape_.strains.size() / (shape_.natural.empty() ? 2 : 3);
+    const Eigen::Index first = field * columns + (shape_.free_start ? 1 : 0);
+    return shape_.strains.segment(first + static_cast<Eigen::Index>(e) * shape_.terms,
+                                  shape_.terms);
   }
 
   void place_planar() {
@@ -98,7 +98,7 @@ class Sampler {
     for (std::size_t e = 0; e < shape_.elements.size(); ++e) {
       placed.element = shape_.elements[e];
       const double turn = placed.element.angle(0);
-      const Eigen::VectorXd theta = coefficients(shape_.theta, 0, e);
+      const Eigen::VectorXd theta = coefficients(0, e);
       Eigen::ArrayXd angle =
           placed.theta + turn * (table_.integrals.leftCols(shape_.terms) * theta).array();
       for (Eigen::Index q = 0; q < angle.size() && !shape_.natural.empty(); ++q) {
@@ -255,18 +255,16 @@ Eigen::VectorXd roll_of(const Eigen::Matrix3Xd& tangents, const Eigen::Matrix3Xd
   return roll;
 }
 
-SpanSamples SpanShape::sample(std::span<const double> s) const {
+Samples SpanShape::sample(std::span<const double> s) const {
   const auto count = static_cast<Eigen::Index>(s.size());
-  SpanSamples samples{Eigen::Matrix3Xd(3, count), Eigen::Matrix3Xd(3, count),
-                      Eigen::Matrix3Xd(3, count), Eigen::Matrix3Xd(3, count)};
+  Samples samples{{},
+                  Eigen::Matrix3Xd(3, count),
+                  Eigen::Matrix3Xd(3, count),
+                  Eigen::Matrix3Xd(3, count),
+                  Eigen::Matrix3Xd(3, count)};
   Sampler sampler(*this);
-  // In the plane the frame has its normal for d1 (Span::d1()).
-  Eigen::Matrix3d frame = Eigen::Matrix3d::Zero();
-  frame(2, 0) = 1;
   for (Eigen::Index i = 0; i < count; ++i) {
-    sampler.evaluate_at(s[static_cast<std::size_t>(i)], samples.points.col(i),
-                        samples.tangents.col(i), samples.curvature.col(i), frame);
-    samples.d1.col(i) = frame.col(0);
+    sampler.evaluate_at(s[static_cast<std::size_t>(i)], i, samples);
   }
   return samples;
 }

@@ -36,16 +36,6 @@ void add_cut_beside(double origin, double sense, double layer, double room,
 /// line loads and section changes. Of those closer than `closest_cuts` the first one is returned.
 [[nodiscard]] std::vector<double> kink_positions(const Span& span);
 
-/// Samples of a span's shape, in the span's units and frame.
-struct SpanSamples {
-  Eigen::Matrix3Xd points;  ///< relative to the anchor
-  Eigen::Matrix3Xd tangents;
-  Eigen::Matrix3Xd curvature;
-  /// First directors of the rod's own frames or, without material directors, of Bishop's frames;
-  /// Span::first_d1() at a clamped start. In the plane it is z.
-  Eigen::Matrix3Xd d1;
-};
-
 /// A shape as initial guess, at given arc lengths in ascending order.
 struct StartShape {
   Eigen::Matrix3Xd tangents;
@@ -69,21 +59,23 @@ using TangentField = std::function<StartShape(const Eigen::VectorXd&)>;
 /// d1.
 [[nodiscard]] Eigen::VectorXd roll_of(const Eigen::Matrix3Xd& tangents, const Eigen::Matrix3Xd& d1);
 
-/// Shape of a span. In the plane it is the angle at the start and the Legendre coefficients of its
-/// derivative on every element; in space it is the start's frame and the unknowns of RodFrames.
+/// Shape of a span: the angle at the start or, in space, the start's frame, and the unknowns of
+/// PlanarFrames or RodFrames.
 struct SpanShape {
   int terms = 0;
   bool planar = true;
   double anchor = 0;
   std::vector<Element> elements;
-  double start_theta = 0;
-  Eigen::VectorXd theta;  ///< coefficients of u1, element by element
+  double start_theta = 0;  ///< in the plane, with the rotation of a free start [rad]
   Eigen::Matrix3d start_frame = Eigen::Matrix3d::Identity();
   bool free_start = false;
   Eigen::VectorXd strains;
   NaturalStrains natural;
 
-  [[nodiscard]] SpanSamples sample(std::span<const double> s) const;
+  /// Returns samples in the span's units and frame, relative to the anchor; `arc_length` is empty.
+  /// `d1` are the first directors of the rod's own frames or, without material directors, of
+  /// Bishop's frames: Span::first_d1() at a clamped start. In the plane they are z.
+  [[nodiscard]] Samples sample(std::span<const double> s) const;
 };
 
 }  // namespace dlo::energy_model

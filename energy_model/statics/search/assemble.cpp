@@ -372,7 +372,7 @@ Samples sample(const std::vector<PlacedShape>& shapes, double length,
   }
   for (std::size_t p = 0; p < shapes.size(); ++p) {
     const PlacedShape& placed = shapes[p];
-    const SpanSamples own = placed.shape.sample(own_s[p]);
+    const Samples own = placed.shape.sample(own_s[p]);
     const double sense = placed.reversed ? -1 : 1;
     for (std::size_t k = 0; k < columns[p].size(); ++k) {
       const Eigen::Index i = columns[p][k];

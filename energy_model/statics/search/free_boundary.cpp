@@ -222,7 +222,7 @@ Eigen::VectorXd free_boundary_residual(const SpanSolution& solution,
     const bool after = span.contacts[end.contact].lies() && !end.begins;
     s.push_back(after ? at + offset : at - offset);
   }
-  const SpanSamples samples = solution.model->shape(solution.x).sample(s);
+  const Samples samples = solution.model->shape(solution.x).sample(s);
   Eigen::VectorXd result(static_cast<Eigen::Index>(ends.size()));
   for (std::size_t i = 0; i < ends.size(); ++i) {
     const auto column = static_cast<Eigen::Index>(i);

@@ -4,7 +4,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include "base/sized_samples.hpp"
 #include "certify/rigid_body_modes.hpp"
 #include "strain/span_energy.hpp"
 
@@ -50,15 +49,8 @@ int SearchLog::starts() const {
 
 std::optional<Writhe> writhe_of(const SpanSolution& solution) {
   const SpanShape shape = solution.model->shape(solution.x);
-  const double length = solution.model->span().length;
-  const auto sample = [&shape, length](std::span<const double> at) {
-    const SpanSamples own = shape.sample(at);
-    Samples samples = sized_samples(at, length);
-    samples.points = own.points;
-    samples.tangents = own.tangents;
-    return samples;
-  };
-  return writhe(sample, 0, length);
+  return writhe([&shape](std::span<const double> at) { return shape.sample(at); }, 0,
+                solution.model->span().length);
 }
 
 bool belongs_to_class(SpanSolution& solution, const std::optional<double>& turns) {

@@ -299,7 +299,7 @@ std::vector<TangentField> natural_fields(const Span& span) {
   const SpanEnergy model(span, natural_shape_terms);
   const SpanShape free = model.shape(Eigen::VectorXd::Zero(model.size()));
   fields.emplace_back([free](const Eigen::VectorXd& s) {
-    const SpanSamples samples = free.sample({s.data(), static_cast<std::size_t>(s.size())});
+    const Samples samples = free.sample({s.data(), static_cast<std::size_t>(s.size())});
     return StartShape(samples.tangents, roll_of(samples.tangents, samples.d1));
   });
   for (const TangentField& plain : start_fields(span)) {

@@ -323,15 +323,10 @@ SpanShape SpanEnergy::shape(const Eigen::VectorXd& x) const {
   shape.planar = span_.planar;
   shape.anchor = span_.anchor;
   shape.elements = elements_;
-  const Eigen::Index free_start = unknowns_.free_start;
-  if (span_.planar) {
-    shape.start_theta = plane_.start_theta() + (free_start == 1 ? x[0] : 0);
-    shape.theta = x.tail(size() - free_start);
-  } else {
-    shape.start_frame = start_frame_;
-    shape.free_start = free_start == 1;
-    shape.strains = x.head(strains());
-  }
+  shape.free_start = unknowns_.free_start == 1;
+  if (span_.planar) shape.start_theta = plane_.start_theta() + (shape.free_start ? x[0] : 0);
+  shape.start_frame = start_frame_;
+  shape.strains = x.head(strains());
   shape.natural = span_.natural;
   return shape;
 }
@@ -340,7 +335,7 @@ TangentField SpanEnergy::field(const Eigen::VectorXd& x) const {
   const bool has_roll = !span_.planar && span_.has_material_directors();
   const double psi = has_psi() ? twist(x) : 0;
   return [shape = shape(x), has_roll, psi](const Eigen::VectorXd& s) {
-    const SpanSamples samples = shape.sample({s.data(), static_cast<std::size_t>(s.size())});
+    const Samples samples = shape.sample({s.data(), static_cast<std::size_t>(s.size())});
     StartShape start(samples.tangents);
     if (has_roll) start.roll = roll_of(samples.tangents, samples.d1);
     start.twist = psi;
