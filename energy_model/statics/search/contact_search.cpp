@@ -86,10 +86,7 @@ class ContactSearch {
     }
     const std::size_t before = known.size();
     for (const Span& start : starts) {
-      if (options_.deadline.passed()) {
-        log_omitted(options_.log, "starts after the time limit");
-        break;
-      }
+      if (omits_late_starts(options_)) break;
       log_tried(options_.log, past_obstacles);
       if (options_.other_side_starts != nullptr) ++*options_.other_side_starts;
       PenaltyPolygon polygon = coarse_polygon(arch_field(start));
@@ -205,10 +202,7 @@ class ContactSearch {
   void refine(const std::vector<PenaltyPolygon>& polygons) {
     for (std::size_t i = 0; i < polygons.size(); ++i) {
       const PenaltyPolygon& polygon = polygons[i];
-      if (options_.deadline.passed() && !found_.empty()) {
-        log_omitted(options_.log, "starts after the time limit");
-        return;
-      }
+      if (!found_.empty() && omits_late_starts(options_)) return;
       if (found_.add(from_polygon(polygon))) log_found(options_.log, polygons_at_rest);
       const bool tie =
           i + 1 < polygons.size() && polygons[i + 1].energy - polygon.energy <=
@@ -223,10 +217,7 @@ class ContactSearch {
       std::size_t count, const std::function<PenaltyPolygon(std::size_t)>& rest) {
     std::vector<PenaltyPolygon> polygons;
     for (std::size_t i = 0; i < count; ++i) {
-      if (options_.deadline.passed() && !polygons.empty()) {
-        log_omitted(options_.log, "starts after the time limit");
-        break;
-      }
+      if (!polygons.empty() && omits_late_starts(options_)) break;
       log_tried(options_.log, polygons_at_rest);
       PenaltyPolygon polygon = rest(i);
       found_.add_evaluations(polygon.evaluations);

@@ -140,10 +140,7 @@ void add_polygon_minima(const PlacedSpan& placed, const Problem& problem, SpanOp
   }
   const PolygonFields fields(problem, placed, options.deadline);
   for (std::size_t i = 0; i < fields.size(); ++i) {
-    if (options.deadline.passed()) {
-      log_omitted(options.log, "starts after the time limit");
-      return;
-    }
+    if (omits_late_starts(options)) return;
     // A minimum of the polygon is near one of the rod; with too few coefficients the solver could
     // converge elsewhere.
     options.start = {fields.field(i)};

@@ -51,8 +51,13 @@ inline void log_omitted(SearchLog* log, const std::string& what) {
   if (log != nullptr) log->add_omitted(what);
 }
 
-/// Largest difference of points, divided by the length, up to which converged shapes count as one.
-inline constexpr double equal_points_tolerance = 1e-6;
+/// Whether the time limit has passed. The starts that are left are then omitted, which is added to
+/// the log.
+[[nodiscard]] inline bool omits_late_starts(const SpanOptions& options) {
+  const bool late = options.deadline.passed();
+  if (late) log_omitted(options.log, "starts after the time limit");
+  return late;
+}
 
 /// Whether a solution is a result of the search. A search for all equilibria also includes those at
 /// a fold or bifurcation.
@@ -79,9 +84,10 @@ inline constexpr const char* no_equilibrium_of_class =
 
 /// Whether two equilibria of one span have the same energy and, up to rigid-body motion in space,
 /// the same points at three arc lengths.
-/// @param tolerance  largest difference of points, divided by the span's length
+/// @param tolerance  largest difference of points, divided by the span's length; the default is for
+///   converged shapes
 [[nodiscard]] bool is_same_shape(const SpanSolution& a, const SpanSolution& b,
-                                 double tolerance = equal_points_tolerance);
+                                 double tolerance = 1e-6);
 
 /// Results of a search: each equilibrium once, or the first failure as long as there is none; the
 /// number of all evaluations, and the log of the strategies.

@@ -186,7 +186,7 @@ class Search {
   }
 
   void log_omitted() const {
-    if (on_.out_of_time()) options_.log->add_omitted("starts after the time limit");
+    (void)omits_late_starts(options_);
     std::ptrdiff_t saddles = 0;
     for (std::size_t i = saddles_left_; i < found_.size(); ++i) {
       saddles += found_[i].status == SolveStatus::saddle ? 1 : 0;
