@@ -319,10 +319,6 @@ EnergySearch EnergySolver::search(const Problem& problem) {
   return result;
 }
 
-std::vector<Equilibrium> EnergySolver::solve_all(const Problem& problem) {
-  return search(problem).equilibria;
-}
-
 Equilibrium solve_energy(const Problem& problem, const EnergyOptions& options) {
   return EnergySolver(options).solve(problem);
 }
@@ -338,7 +334,7 @@ EnergySearch search_energy(const Problem& problem, const EnergyOptions& options)
 }
 
 std::vector<Equilibrium> all_energy(const Problem& problem, const EnergyOptions& options) {
-  return EnergySolver(options).solve_all(problem);
+  return search_energy(problem, options).equilibria;
 }
 
 }  // namespace dlo::energy_model

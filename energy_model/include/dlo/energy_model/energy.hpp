@@ -140,8 +140,6 @@ class EnergySolver {
                    const Eigen::Ref<const Eigen::Matrix3Xd>& points);
   /// Searches as search_energy() does.
   [[nodiscard]] EnergySearch search(const Problem& problem);
-  /// Returns the equilibria that all_energy() returns.
-  [[nodiscard]] std::vector<Equilibrium> solve_all(const Problem& problem);
 
  private:
   class State;
