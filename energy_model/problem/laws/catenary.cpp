@@ -9,6 +9,9 @@ namespace {
 
 using Vector = Eigen::Vector3d;
 
+/// Maximum number of halvings of an interval; rounding may keep it from closing.
+constexpr int halvings = 200;
+
 /// Solves sinh(u) / u = ratio for u, given ratio - 1.
 double root_of_sinh_ratio(double excess) {
   const auto excess_at = [](double u) {
@@ -21,7 +24,6 @@ double root_of_sinh_ratio(double excess) {
   double low = 0;
   double high = 1;
   while (excess_at(high) < excess && high < 700) high *= 2;
-  constexpr int halvings = 200;
   for (int i = 0; i < halvings && high - low > 1e-16 * high; ++i) {
     const double middle = (low + high) / 2;
     (excess_at(middle) < excess ? low : high) = middle;
@@ -109,7 +111,6 @@ std::optional<Catenary> catenary_on_floor(const Vector& begin, const Vector& end
   double low = 1e-6 * l;
   double high = 1e6 * l;
   if (!(spare(low) > l - x) || !(spare(high) < l - x)) return std::nullopt;
-  constexpr int halvings = 200;
   for (int i = 0; i < halvings && high / low > 1 + 1e-15; ++i) {
     const double middle = std::sqrt(low * high);
     (spare(middle) > l - x ? low : high) = middle;

@@ -271,10 +271,12 @@ class CatenaryLimit {
     constexpr double rounding = 1e-12;
     if (!(result.residual <= result.error_estimate + rounding)) return std::nullopt;
     result.status = SolveStatus::converged;
-    result.message =
-        "converged: a catenary with bending layers at its ends, the limit of small EI / (w l^3); "
-        "neglected terms move points by about " +
-        text_of(result.error_estimate) + " of l";
+    std::ostringstream message;
+    message << std::setprecision(1) << std::scientific
+            << "converged: a catenary with bending layers at its ends, the limit of small EI / (w "
+               "l^3); neglected terms move points by about "
+            << result.error_estimate << " of l";
+    result.message = message.str();
     const double first = line_.hanging_arc_length(0);
     const double last = line_.hanging_arc_length(l);
     const double offset = (line_.origin - problem_.grips.front().position).dot(up_);
@@ -330,12 +332,6 @@ class CatenaryLimit {
     part.end_force = rises_at_end ? pressed : 0.0;
     part.largest_pressure = weight_;
     result.contacts = {part};
-  }
-
-  static std::string text_of(double value) {
-    std::ostringstream text;
-    text << std::setprecision(1) << std::scientific << value;
-    return text.str();
   }
 
   const Problem& problem_;

@@ -32,12 +32,6 @@ void check_frame(const Grip& grip) {
           "d1 of a clamp's frame, across its direction", across, "> 0");
 }
 
-void check_twist(const Problem& problem) {
-  if (clamps_with_frames(problem) < 2) return;
-  require(problem.torsional_stiffness > 0, "Problem", "torsional_stiffness",
-          problem.torsional_stiffness, "> 0 if two clamps hold the rod's frame");
-}
-
 void check_sections(const Problem& problem) {
   double before = 0;
   for (const Section& section : problem.sections) {
@@ -138,7 +132,9 @@ void check(const Problem& problem) {
     }
     if (grip.frame) check_frame(grip);
   }
-  check_twist(problem);
+  require(problem.torsional_stiffness > 0 || clamps_with_frames(problem) < 2, "Problem",
+          "torsional_stiffness", problem.torsional_stiffness,
+          "> 0 if two clamps hold the rod's frame");
   check_sections(problem);
   check_material_directors(problem);
   for (const Obstacle& obstacle : problem.obstacles) {

@@ -40,20 +40,18 @@ void add_line_load(const LineLoad& load, std::vector<RodPart>& parts) {
   parts = std::move(cut);
 }
 
-/// Calls `add` with the directions in which loads and drag act, and with two directions across each
-/// couple.
-void add_loads(const Problem& problem,
-               const std::function<void(const Eigen::Vector3d&, double)>& add) {
+/// Calls `add` with the directions in which loads act, and with two directions across each couple.
+void add_loads(const Problem& problem, const std::function<void(const Eigen::Vector3d&)>& add) {
   for (const LineLoad& load : problem.line_loads) {
-    add(load.at_begin, 0);
-    add(load.at_end, 0);
+    add(load.at_begin);
+    add(load.at_end);
   }
-  if (problem.drag) add(problem.drag->velocity, 0);
+  if (problem.drag) add(problem.drag->velocity);
   for (const Load& load : problem.loads) {
     if (load.follows) continue;  // the direction is given in the axes of the section
-    add(load.force, 0);
+    add(load.force);
     if (load.torque.isZero(0)) continue;
-    for (const Eigen::Vector3d& direction : plane_across(load.torque)) add(direction, 0);
+    for (const Eigen::Vector3d& direction : plane_across(load.torque)) add(direction);
   }
 }
 
@@ -170,20 +168,21 @@ std::optional<Eigen::Vector3d> natural_normal(const Problem& problem) {
   // find_plane() takes one vector as the direction of the rod and compares the others with the
   // largest of them, so all are scaled to unit length.
   std::vector<Eigen::Vector3d> directions;
-  const auto add = [&](const Eigen::Vector3d& v, double unit) {
-    if (v.norm() > 1e-9 * unit) directions.push_back(v.normalized());
+  const auto add = [&](const Eigen::Vector3d& v) {
+    if (v.norm() > 0) directions.push_back(v.normalized());
   };
   for (const Grip& grip : problem.grips) {
-    if (grip.direction) add(*grip.direction, 0);
-    add(grip.position - problem.grips.front().position, problem.length);
+    if (grip.direction) add(*grip.direction);
+    const Eigen::Vector3d offset = grip.position - problem.grips.front().position;
+    if (offset.norm() > same_arc_length_share * problem.length) add(offset);
   }
-  add(problem.weight_per_length, 0);
-  for (const Section& section : problem.sections) add(section.weight_per_length, 0);
+  add(problem.weight_per_length);
+  for (const Section& section : problem.sections) add(section.weight_per_length);
   // Loads do not determine the plane of a curved stress-free shape.
   const bool is_straight = problem.natural_strains.empty();
   if (is_straight) add_loads(problem, add);
   for (const Obstacle& obstacle : problem.obstacles) {
-    if (obstacle.body.is_half_space()) add(obstacle.body.normal(), 0);
+    if (obstacle.body.is_half_space()) add(obstacle.body.normal());
   }
   // Without another direction, a line in x-y determines the plane x-y.
   const Eigen::Vector3d first = directions.empty() ? Eigen::Vector3d::UnitX() : directions.front();
