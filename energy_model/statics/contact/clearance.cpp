@@ -30,6 +30,35 @@ constexpr int halvings_beside_contact = 10;
 /// Clearance of points that are not evaluated, as no point near them is low enough.
 constexpr double not_evaluated = std::numeric_limits<double>::infinity();
 
+/// Returns indices of points of a grid in ascending order: all points of every coarse interval
+/// (`stride` grid intervals) that has a clearance of at most `most` at one of its ends. The
+/// clearance changes along a rod by no more than the arc length; all other points therefore have a
+/// clearance above `most` minus half a coarse interval.
+/// @param s       arc lengths of the grid, equally spaced, a multiple of `stride` intervals
+/// @param sample  returns samples of the shape at arc lengths
+template <typename Sample>
+std::vector<std::size_t> points_near_obstacle(const std::vector<double>& s, std::size_t stride,
+                                              double most,
+                                              const std::vector<const obstacle::Body*>& bodies,
+                                              const Sample& sample) {
+  std::vector<double> coarse;
+  for (std::size_t i = 0; i < s.size(); i += stride) coarse.push_back(s[i]);
+  const Samples samples = sample(coarse);
+  Eigen::VectorXd least = Eigen::VectorXd::Constant(samples.points.cols(), not_evaluated);
+  for (const obstacle::Body* body : bodies) {
+    least = least.cwiseMin(body->clearances(samples.points));
+  }
+  std::vector<std::size_t> result;
+  for (std::size_t k = 0; k + 1 < coarse.size(); ++k) {
+    const auto at = static_cast<Eigen::Index>(k);
+    if (std::min(least[at], least[at + 1]) > most) continue;
+    for (std::size_t i = k * stride; i <= (k + 1) * stride; ++i) {
+      if (result.empty() || result.back() < i) result.push_back(i);
+    }
+  }
+  return result;
+}
+
 /// Finds the smallest clearance between `low` and `high` by Newton's method from `at`.
 GapMinimum smallest_clearance(const Span::Obstacle& obstacle, const SpanShape& shape, double low,
                               double at, double high) {
@@ -122,16 +151,12 @@ std::vector<double> near_obstacles(const Problem& problem, const Equilibrium& sh
   const std::vector<double> s = equal_arc_lengths(problem.length, penetration_grid);
   // Half a coarse interval, plus what may lie between two points.
   const double most = (static_cast<double>(stride) / 2 + 2) * s[1];
-  const auto clearances = [&](const std::vector<double>& coarse) {
-    const Samples samples = shape.sample(coarse);
-    Eigen::VectorXd least = Eigen::VectorXd::Constant(samples.points.cols(), INFINITY);
-    for (const Obstacle& obstacle : problem.obstacles) {
-      if (is_rigid(obstacle)) least = least.cwiseMin(obstacle.body.clearances(samples.points));
-    }
-    return least;
-  };
+  std::vector<const obstacle::Body*> bodies;
+  for (const Obstacle& obstacle : problem.obstacles) {
+    if (is_rigid(obstacle)) bodies.push_back(&obstacle.body);
+  }
   std::vector<double> near = {s.front()};
-  for (const std::size_t i : points_near_obstacle(s, stride, most, clearances)) {
+  for (const std::size_t i : points_near_obstacle(s, stride, most, bodies, shape.sample)) {
     if (i > 0) near.push_back(s[i]);
   }
   if (near.back() < s.back()) near.push_back(s.back());
@@ -328,36 +353,14 @@ Clearance clearance_at(const obstacle::Body& body, const Samples& samples, Eigen
           gap.gradient.dot(samples.curvature.col(i)) + t.dot(gap.hessian * t)};
 }
 
-std::vector<std::size_t> points_near_obstacle(
-    const std::vector<double>& s, std::size_t stride, double most,
-    const std::function<Eigen::VectorXd(const std::vector<double>& s)>& clearances) {
-  std::vector<double> coarse;
-  for (std::size_t i = 0; i < s.size(); i += stride) coarse.push_back(s[i]);
-  const Eigen::VectorXd least = clearances(coarse);
-  std::vector<std::size_t> result;
-  for (std::size_t k = 0; k + 1 < coarse.size(); ++k) {
-    const auto at = static_cast<Eigen::Index>(k);
-    if (std::min(least[at], least[at + 1]) > most) continue;
-    for (std::size_t i = k * stride; i <= (k + 1) * stride; ++i) {
-      if (result.empty() || result.back() < i) result.push_back(i);
-    }
-  }
-  return result;
-}
-
 std::vector<GapMinimum> gap_minima(const Span& span, const SpanShape& shape, double below) {
   const std::vector<double> s = equal_arc_lengths(span.length, grid_points);
   // Half a coarse interval, plus one neighbouring point and the sag between points.
   const double most = below + (static_cast<double>(coarse_stride) / 2 + 3) * s[1];
-  std::vector<std::size_t> evaluated =
-      points_near_obstacle(s, coarse_stride, most, [&](const std::vector<double>& coarse) {
-        const Samples samples = shape.sample(coarse);
-        Eigen::VectorXd least = Eigen::VectorXd::Constant(samples.points.cols(), not_evaluated);
-        for (const Span::Obstacle& obstacle : span.rigid_obstacles) {
-          least = least.cwiseMin(obstacle.body.clearances(samples.points));
-        }
-        return least;
-      });
+  std::vector<const obstacle::Body*> bodies;
+  for (const Span::Obstacle& obstacle : span.rigid_obstacles) bodies.push_back(&obstacle.body);
+  std::vector<std::size_t> evaluated = points_near_obstacle(
+      s, coarse_stride, most, bodies, [&](const auto& coarse) { return shape.sample(coarse); });
   if (evaluated.empty()) evaluated.push_back(0);
   std::vector<double> near;
   near.reserve(evaluated.size());

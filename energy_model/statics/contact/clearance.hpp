@@ -1,7 +1,6 @@
 #pragma once
 
 #include <cstddef>
-#include <functional>
 #include <optional>
 #include <vector>
 
@@ -21,16 +20,6 @@ struct Clearance {
 };
 [[nodiscard]] Clearance clearance_at(const obstacle::Body& body, const Samples& samples,
                                      Eigen::Index i);
-
-/// Returns indices of points of a grid in ascending order: all points of every coarse interval
-/// (`stride` grid intervals) that has a clearance of at most `most` at one of its ends. The
-/// clearance changes along a rod by no more than the arc length; all other points therefore have a
-/// clearance above `most` minus half a coarse interval.
-/// @param s           arc lengths of the grid, equally spaced, a multiple of `stride` intervals
-/// @param clearances  returns the smallest clearance at each of the given arc lengths
-[[nodiscard]] std::vector<std::size_t> points_near_obstacle(
-    const std::vector<double>& s, std::size_t stride, double most,
-    const std::function<Eigen::VectorXd(const std::vector<double>& s)>& clearances);
 
 /// A point where a shape is nearest to a rigid obstacle or deepest within it.
 struct GapMinimum {
