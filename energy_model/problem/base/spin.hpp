@@ -8,6 +8,13 @@
 
 namespace dlo::energy_model {
 
+/// Returns the equivalent angle in (-pi, pi]. An angle of -pi up to rounding becomes pi.
+inline double wrap_to_pi(double angle) {
+  constexpr double rounding = 1e-9;
+  const double least = std::remainder(angle, 2 * std::numbers::pi);
+  return least < rounding - std::numbers::pi ? std::numbers::pi : least;
+}
+
 /// Returns the part of a vector across a unit vector.
 inline Eigen::Vector3d part_across(const Eigen::Vector3d& vector,
                                    const Eigen::Vector3d& direction) {

@@ -16,13 +16,6 @@ namespace {
 
 using std::numbers::pi;
 
-/// Returns the equivalent angle in (-pi, pi]. An angle of -pi up to rounding becomes pi.
-double wrap_to_pi(double angle) {
-  constexpr double rounding = 1e-9;
-  const double least = std::remainder(angle, 2 * pi);
-  return least < rounding - pi ? pi : least;
-}
-
 /// Returns the shortest rotation of a clamp's direction into another's; std::nullopt if they are
 /// opposite and along the chord (shortest_rotation()).
 std::optional<Eigen::Quaterniond> rotation_between(const Grip& from, const Grip& to,

@@ -18,10 +18,6 @@
 namespace dlo::energy_model {
 namespace {
 
-/// Largest Newton step that a returned shape may have left; the error of its points, divided by the
-/// rod length, is then about the same.
-constexpr double largest_next_step = 1e-8;
-
 /// Upper bound of the error of any point of a held rod, divided by its length.
 constexpr double largest_error = 2;
 
@@ -37,7 +33,8 @@ constexpr double kantorovich_limit = 0.25;
 constexpr double largest_third_derivative = 4;
 
 /// Returns Newton's step of the coefficients; if it is inaccurate or longer than
-/// `largest_next_step`, the step of minimum norm, which has no component along near-null modes.
+/// `largest_stagnation_step`, the step of minimum norm, which has no component along near-null
+/// modes.
 /// @param gradient  gradient of E - mu . c
 Eigen::VectorXd newton_step(NewtonSystem& system, const SpanPoint& point,
                             const Eigen::VectorXd& gradient) {
@@ -45,7 +42,8 @@ Eigen::VectorXd newton_step(NewtonSystem& system, const SpanPoint& point,
   right << -gradient, -point.residual;
   Eigen::VectorXd step;
   system.solve(right, step);
-  if (!system.is_solved_by(right, step, largest_next_step)) step = system.minimum_norm_step(right);
+  if (!system.is_solved_by(right, step, largest_stagnation_step))
+    step = system.minimum_norm_step(right);
   return step.head(gradient.size());
 }
 
@@ -273,7 +271,7 @@ class Certification {
       return false;
     }
     solution_.residual = std::hypot(gradient_.norm(), scale_ * point_->residual.norm());
-    if (solution_.residual <= largest_next_step * scale_) return true;
+    if (solution_.residual <= largest_stagnation_step * scale_) return true;
     solution_.fail("the residual of the returned shape is not small");
     return false;
   }
@@ -301,10 +299,10 @@ class Certification {
 
   void check_newton_step() {
     solution_.next_step = next_step_.norm();
-    small_step_ = solution_.next_step <= largest_next_step;
+    small_step_ = solution_.next_step <= largest_stagnation_step;
     // With a smaller eigenvalue the remaining residual causes a step that is not small.
-    bound_ =
-        std::max(zero_eigenvalue_limit, small_step_ ? 0 : solution_.residual / largest_next_step);
+    bound_ = std::max(zero_eigenvalue_limit,
+                      small_step_ ? 0 : solution_.residual / largest_stagnation_step);
   }
 
   /// Counts a mode that shifts the shape along the rod as a rigid-body mode. The component of

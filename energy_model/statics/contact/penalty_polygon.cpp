@@ -4,6 +4,7 @@
 #include <cmath>
 #include <limits>
 
+#include "contact/clearance.hpp"
 #include "dlo/energy_model/polygon.hpp"
 
 namespace dlo::energy_model {
@@ -22,10 +23,6 @@ constexpr double penalty_force_scale = 40;
 /// Number of neighbouring segments on an obstacle from which they count as a part in contact
 /// instead of a point.
 constexpr Eigen::Index least_contact_segments = 4;
-
-/// Largest distance from the surface, divided by the rod length, at which a grip counts as on it:
-/// rounding.
-constexpr double surface_tolerance = 1e-9;
 
 /// Newton step of a polygon in equilibrium, divided by the rod length: the proof from
 /// solve_polygon().
@@ -316,7 +313,7 @@ class PenaltyRelaxation {
     // A grip may hold the rod on the surface; no spring force acts on a fixed point there.
     const auto on = [&](Eigen::Index k) {
       return at[k] >= 0 && at[k] <= span_.length &&
-             (clearance[k] <= 0 || (is_held(span_, at[k]) && clearance[k] <= surface_tolerance));
+             (clearance[k] <= 0 || (is_held(span_, at[k]) && clearance[k] <= contact_tolerance));
     };
     for (Eigen::Index i = 0; i < count; ++i) {
       if (!on(i)) continue;

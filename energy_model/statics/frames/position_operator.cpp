@@ -58,10 +58,6 @@ Eigen::VectorXd PositionOperator::begin(Eigen::Index element) const {
   return reach;
 }
 
-PointOperator PositionOperator::at_begin(Eigen::Index element) const {
-  return {begin(element), 0, Eigen::MatrixXd::Zero(0, 1)};
-}
-
 /// Returns weights of an element's nodes in linear functionals of the Legendre series that
 /// interpolates the values at the nodes.
 /// @param of_terms  value of the functional for each polynomial

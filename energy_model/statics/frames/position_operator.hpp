@@ -72,8 +72,6 @@ class PositionOperator {
   /// Returns the weights of points of an element. @param shares  positions of the points, divided
   /// by the element's length
   [[nodiscard]] PointOperator points(Eigen::Index element, const Eigen::VectorXd& shares) const;
-  /// Returns the weights of the point where an element begins, as the only point.
-  [[nodiscard]] PointOperator at_begin(Eigen::Index element) const;
   /// Returns the weights of an element's begin, of its nodes and of its end.
   [[nodiscard]] PointOperator along(Eigen::Index element) const;
   /// Returns the weights of the point at arc length s.

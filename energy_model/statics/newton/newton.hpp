@@ -62,7 +62,8 @@ class BroydenSteps {
 inline constexpr double largest_grip_force = 1e10;
 
 /// Length of the next Newton step above which a residual that no longer decreases is not accepted
-/// as a solution [rad].
+/// as a solution, and a returned shape is not certified [rad]. The error of the shape's points,
+/// divided by the rod length, is about the same.
 inline constexpr double largest_stagnation_step = 1e-8;
 
 /// Length of the next Newton step at which the iteration ends [rad]; it is a part of the shape's

@@ -10,6 +10,7 @@
 #include <utility>
 
 #include "base/legendre.hpp"
+#include "base/spin.hpp"
 #include "certify/piece_cuts.hpp"
 #include "linear/reduced_hessian.hpp"
 #include "newton/trust_region.hpp"
@@ -63,10 +64,7 @@ constexpr int least_path_terms = 8;
 /// Returns the angle about `axis` from a to the component of b normal to it, in (-pi, pi].
 double angle_about(const Eigen::Vector3d& axis, const Eigen::Vector3d& a,
                    const Eigen::Vector3d& b) {
-  const double angle = std::atan2(axis.dot(a.cross(b)), a.dot(b) - axis.dot(a) * axis.dot(b));
-  // An angle of -pi by rounding is returned as pi.
-  constexpr double rounding = 1e-9;
-  return angle < -pi + rounding ? pi : angle;
+  return wrap_to_pi(std::atan2(axis.dot(a.cross(b)), a.dot(b) - axis.dot(a) * axis.dot(b)));
 }
 
 class TwistPath {

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <limits>
 #include <memory>
+#include <string>
 #include <utility>
 
 #include "base/legendre.hpp"
@@ -68,7 +69,8 @@ class Refinement {
       if (solution.terms >= most_terms) {
         if (std::optional<SpanSolution> adapted = on_adapted_mesh(solution))
           return std::move(*adapted);
-        solution.fail(solution.too_few_terms());
+        solution.fail("the curvature is not resolved by " + std::to_string(solution.terms) +
+                      " terms");
         break;
       }
       const bool too_few = solution.terms < on_.terms() && !touches;

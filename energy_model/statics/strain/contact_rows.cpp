@@ -81,7 +81,7 @@ void ContactRows::add_clearance(const Span& span, std::size_t contact,
     CurvedContact curved;
     curved.contact = contact;
     curved.body = own.obstacle.body;
-    curved.reach = reach_.at_begin(element);
+    curved.reach = {reach_.begin(element), 0, Eigen::MatrixXd::Zero(0, 1)};
     curved.weights.setOnes(1, 1);
     add_curved(std::move(curved), 1);
   }

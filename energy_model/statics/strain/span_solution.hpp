@@ -78,10 +78,6 @@ struct [[nodiscard]] SpanSolution {
   [[nodiscard]] bool is_singular_point() const {
     return status == SolveStatus::near_singular && neutral_directions > 0;
   }
-  /// Returns the message for a shape that is not `resolved`.
-  [[nodiscard]] std::string too_few_terms() const {
-    return "the curvature is not resolved by " + std::to_string(terms) + " terms";
-  }
   [[nodiscard]] bool is_equilibrium() const {
     return succeeded(status) || status == SolveStatus::saddle;
   }
