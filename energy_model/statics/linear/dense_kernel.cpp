@@ -48,6 +48,9 @@ inline double dot(const double* a, const double* b, std::ptrdiff_t size) {
 
 // Products of matrices
 
+/// Number of columns that are computed at once.
+constexpr std::ptrdiff_t strip_width = 4;
+
 /// Factors of the columns of A in a product: element k of column j of the right operand is stored
 /// at data + k * next + j * beside.
 struct Factors {
@@ -113,11 +116,10 @@ inline void multiply_strip(const ConstColumns& a, const Factors& b, const Column
 }
 
 inline void multiply(const ConstColumns& a, const ConstColumns& b, const Columns& result) {
-  constexpr std::ptrdiff_t width = 4;
   const Factors factors = {b.data, 1, b.stride};
-  if (b.columns >= width) {
-    for (std::ptrdiff_t j = 0; j < b.columns; j += width) {
-      multiply_strip<width>(a, factors, result, 0, smaller(j, b.columns - width));
+  if (b.columns >= strip_width) {
+    for (std::ptrdiff_t j = 0; j < b.columns; j += strip_width) {
+      multiply_strip<strip_width>(a, factors, result, 0, smaller(j, b.columns - strip_width));
     }
     return;
   }
@@ -128,11 +130,11 @@ inline void multiply(const ConstColumns& a, const ConstColumns& b, const Columns
 
 inline void multiply_symmetric(const ConstColumns& a, const ConstColumns& b,
                                const Columns& result) {
-  constexpr std::ptrdiff_t width = 4;
   const Factors factors = {b.data, b.stride, 1};
   const std::ptrdiff_t n = a.rows;
   std::ptrdiff_t j = 0;
-  for (; j + width <= n; j += width) multiply_strip<width>(a, factors, result, j, j);
+  for (; j + strip_width <= n; j += strip_width)
+    multiply_strip<strip_width>(a, factors, result, j, j);
   for (; j < n; ++j) multiply_strip<1>(a, factors, result, j, j);
   for (j = 0; j < n; ++j) {
     for (std::ptrdiff_t i = j + 1; i < n; ++i) {
@@ -206,10 +208,9 @@ inline bool factor_strip(const Columns& a, std::ptrdiff_t j) {
 }
 
 inline bool factor(const Columns& a) {
-  constexpr std::ptrdiff_t width = 4;
   std::ptrdiff_t j = 0;
-  for (; j + width <= a.columns; j += width) {
-    if (!factor_strip<width>(a, j)) return false;
+  for (; j + strip_width <= a.columns; j += strip_width) {
+    if (!factor_strip<strip_width>(a, j)) return false;
   }
   for (; j < a.columns; ++j) {
     if (!factor_strip<1>(a, j)) return false;
@@ -274,13 +275,12 @@ inline void solve_backward(const ConstColumns& l, double* x, std::ptrdiff_t j) {
 }
 
 inline void solve(const ConstColumns& l, double* x) {
-  constexpr std::ptrdiff_t width = 4;
-  const std::ptrdiff_t whole = l.rows / width * width;
+  const std::ptrdiff_t whole = l.rows / strip_width * strip_width;
   std::ptrdiff_t j = 0;
-  for (; j < whole; j += width) solve_forward<width>(l, x, j);
+  for (; j < whole; j += strip_width) solve_forward<strip_width>(l, x, j);
   for (; j < l.rows; ++j) solve_forward<1>(l, x, j);
   for (; j > whole; --j) solve_backward<1>(l, x, j - 1);
-  for (; j > 0; j -= width) solve_backward<width>(l, x, j - width);
+  for (; j > 0; j -= strip_width) solve_backward<strip_width>(l, x, j - strip_width);
 }
 
 // Quaternions, sines and cosines
