@@ -46,20 +46,20 @@ Span spatial_arch(double lean) {
 // point.
 TEST(Certify, UsesTheFactorAtTheShapeItself) {
   SpanWorkspace workspace;
-  NewtonFactors& factors = workspace.factors();
+  NewtonBuffers& buffers = workspace.newton();
   const Span span = spatial_arch(0.3);
   const SpanSolution solution = std::move(solve_span(span, SpanOptions(), workspace).front());
   ASSERT_EQ(solution.status, SolveStatus::converged) << solution.message;
   SpanSolution alone = solution;
   alone.factor.reset();
-  certify(alone, factors);
+  certify(alone, buffers);
   for (const double away : {1e-8, 3e-5, 1e-2}) {
     SpanSolution beside = solution;
     beside.x[1] += away;
-    factors.factor_at(beside, *beside.at_x());
+    buffers.factor_at(beside, *beside.at_x());
     SpanSolution certified = solution;
     certified.factor = beside.factor;
-    certify(certified, factors);
+    certify(certified, buffers);
     EXPECT_EQ(certified.status, SolveStatus::converged) << certified.message;
     EXPECT_EQ(certified.smallest_eigenvalue, alone.smallest_eigenvalue);
     EXPECT_EQ(certified.factor->distance(certified), 0);
@@ -92,7 +92,7 @@ SpanSolution straight_upright_shape(SpanWorkspace& workspace) {
   const Span span = nearly_buckling();
   SpanSolution solution = std::move(solve_span(span, SpanOptions(), workspace).front());
   solution.factor.reset();
-  certify(solution, workspace.factors());
+  certify(solution, workspace.newton());
   EXPECT_EQ(solution.status, SolveStatus::converged) << solution.message;
   EXPECT_LT(solution.smallest_eigenvalue, 0.02);
   EXPECT_GT(solution.smallest_eigenvalue, 1e-4);
@@ -109,7 +109,7 @@ TEST(Certify, CallsAShapeWhoseNextStepIsNotSmallUndetermined) {
   for (const double away : {1e-9, 1e-6}) {
     SpanSolution moved = solution;
     moved.x += away * soft;
-    certify(moved, workspace.factors());
+    certify(moved, workspace.newton());
     EXPECT_NEAR(moved.next_step, away, 0.1 * away);
     EXPECT_LE(moved.residual, 1e-8);
     EXPECT_EQ(moved.status, away < 1e-8 ? SolveStatus::converged : SolveStatus::near_singular);
@@ -126,12 +126,12 @@ TEST(Certify, CallsASaddleWhoseNextStepIsNotSmallUndetermined) {
   SpanWorkspace workspace;
   const SpanSolution straight = straight_shape(span);
   SpanSolution saddle = straight;
-  certify(saddle, workspace.factors());
+  certify(saddle, workspace.newton());
   EXPECT_EQ(saddle.status, SolveStatus::saddle) << saddle.message;
   SpanSolution moved = straight;
   moved.x +=
       1e-6 * eigenvector_by_magnitude(saddle.factor->system.reduced_hessian(), 0).normalized();
-  certify(moved, workspace.factors());
+  certify(moved, workspace.newton());
   EXPECT_LE(moved.residual, 1e-8);
   EXPECT_LT(moved.smallest_eigenvalue, -1e-4);
   EXPECT_EQ(moved.status, SolveStatus::near_singular);
@@ -155,7 +155,7 @@ TEST(Certify, RejectsAResidualAboveItsLimit) {
   for (const double share : {1e-9, 1e-7}) {
     SpanSolution pulled = solution;
     pulled.multipliers[0] += share * scale / force.norm();
-    certify(pulled, workspace.factors());
+    certify(pulled, workspace.newton());
     EXPECT_NEAR(pulled.residual, share * scale, 0.1 * share * scale);
     EXPECT_EQ(pulled.status, share < 1e-8 ? SolveStatus::converged : SolveStatus::failed);
     if (share > 1e-8) EXPECT_EQ(pulled.message, "the residual of the returned shape is not small");
@@ -166,7 +166,7 @@ TEST(Certify, RejectsGripsThatPullWithoutBound) {
   SpanWorkspace workspace;
   SpanSolution solution = arch_at_rest(workspace);
   solution.multipliers[0] = 1e15;
-  certify(solution, workspace.factors());
+  certify(solution, workspace.newton());
   EXPECT_EQ(solution.status, SolveStatus::failed);
   EXPECT_EQ(solution.message, "the reactions of the grips are unbounded");
 }
@@ -179,12 +179,12 @@ TEST(Certify, ClaimsNoMoreThanTheSearch) {
        {SolveStatus::near_singular, SolveStatus::failed, SolveStatus::evaluation_limit}) {
     SpanSolution left = solution;
     left.status = status;
-    certify(left, workspace.factors());
+    certify(left, workspace.newton());
     EXPECT_EQ(left.status, status);
   }
   SpanSolution saddle = solution;
   saddle.status = SolveStatus::saddle;
-  certify(saddle, workspace.factors());
+  certify(saddle, workspace.newton());
   EXPECT_EQ(saddle.status, SolveStatus::converged);
 }
 
@@ -208,14 +208,14 @@ TEST(Certify, CallsNoShapeStableThatPassesTheMiddleOfAYieldingBody) {
   using obstacle::Body;
   constexpr double soft = 0.01;
   SpanSolution beside = straight_through(Body::cylinder({0.503, 0.05, 0}, {0, 0, 1}, 0.1), 0);
-  certify(beside, workspace.factors());
+  certify(beside, workspace.newton());
   EXPECT_EQ(beside.status, SolveStatus::converged) << beside.message;
   SpanSolution through = straight_through(Body::cylinder({0.503, 0, 0}, {0, 0, 1}, 0.1), soft);
-  certify(through, workspace.factors());
+  certify(through, workspace.newton());
   EXPECT_GT(through.smallest_eigenvalue, 0.01);
   EXPECT_EQ(through.status, SolveStatus::saddle);
   SpanSolution near = straight_through(Body::cylinder({0.503, 1e-3, 0}, {0, 0, 1}, 0.1), 1e-9);
-  certify(near, workspace.factors());
+  certify(near, workspace.newton());
   EXPECT_EQ(near.status, SolveStatus::near_singular);
   EXPECT_EQ(near.neutral_directions, 1);
 }

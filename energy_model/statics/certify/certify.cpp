@@ -229,10 +229,10 @@ bool may_be_at_fold(const SpanSolution& solution, double eta) {
 
 class Certification {
  public:
-  Certification(SpanSolution& solution, NewtonFactors& factors)
+  Certification(SpanSolution& solution, NewtonBuffers& buffers)
       : solution_(solution),
         model_(*solution.model),
-        factors_(factors),
+        buffers_(buffers),
         scale_(solution.scale_of_forces()),
         obstacles_(model_.has_soft_obstacles() || !model_.span().contacts.empty()) {}
 
@@ -284,7 +284,7 @@ class Certification {
 
   /// Computes Newton's step and the second variation at the shape.
   void factorise() {
-    factors_.factor_at(solution_, *point_);
+    buffers_.factor_at(solution_, *point_);
     NewtonSystem& system = solution_.factor->system;
     next_step_ = newton_step(system, *point_, gradient_);
     check_newton_step();
@@ -378,7 +378,7 @@ class Certification {
 
   SpanSolution& solution_;
   const SpanEnergy& model_;
-  NewtonFactors& factors_;
+  NewtonBuffers& buffers_;
   const double scale_;  // scale of forces
   const bool obstacles_;
   std::shared_ptr<SpanPoint> point_;
@@ -393,12 +393,12 @@ class Certification {
 
 }  // namespace
 
-void certify(SpanSolution& solution, NewtonFactors& factors) {
+void certify(SpanSolution& solution, NewtonBuffers& buffers) {
   if (!solution.is_equilibrium() && solution.status != SolveStatus::near_singular) return;
-  Certification(solution, factors).run();
+  Certification(solution, buffers).run();
 }
 
-void certify_out_of_plane(SpanSolution& solution, NewtonFactors& factors) {
+void certify_out_of_plane(SpanSolution& solution, NewtonBuffers& buffers) {
   const Span& span = solution.model->span();
   // Only a rod that is pulled along its clamp can rotate freely, about that direction; such
   // problems are rare.
@@ -413,7 +413,7 @@ void certify_out_of_plane(SpanSolution& solution, NewtonFactors& factors) {
   // Newton's method determines no eigenvalue of a saddle in the plane. An eigenvalue up to
   // `zero_eigenvalue_limit` may belong to a fold by rounding alone.
   if (solution.status == SolveStatus::near_singular || may_be_at_fold(solution, eta)) {
-    return certify(solution, factors);
+    return certify(solution, buffers);
   }
   if (!solution.is_equilibrium()) return;
   solution.error = error_estimate(solution, eta);

@@ -4,7 +4,7 @@
 
 namespace dlo::energy_model {
 
-class NewtonFactors;
+struct NewtonBuffers;
 
 /// Verifies the result of a search at its own x before it may be `converged`: the residual of the
 /// gradient of E - mu.c and of the constraints, Newton's step from there, and the eigenvalues of
@@ -19,11 +19,11 @@ class NewtonFactors;
 /// does not become `converged`. A shape through the middle of a soft obstacle becomes a `saddle`,
 /// one very near to it `near_singular` (classify_middle_passage()). Unless the result is `failed`,
 /// the solution's factor on return is that at solution.x.
-void certify(SpanSolution& solution, NewtonFactors& factors);
+void certify(SpanSolution& solution, NewtonBuffers& buffers);
 
 /// Certifies a plain cantilever that Newton's method has just found, which has checked its step and
 /// its second variation in the plane. Only the sign of the second variation out of the plane is
 /// determined. A singular point, or a shape that may be at a fold, is passed to certify().
-void certify_out_of_plane(SpanSolution& solution, NewtonFactors& factors);
+void certify_out_of_plane(SpanSolution& solution, NewtonBuffers& buffers);
 
 }  // namespace dlo::energy_model

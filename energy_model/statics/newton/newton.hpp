@@ -26,19 +26,6 @@ struct NewtonFactor {
   }
 };
 
-/// Makes factors. Buffers are reused once nobody holds their factor any more.
-class NewtonFactors {
- public:
-  /// Factors the second variation of E - mu . c with the constraints at the solution, and stores
-  /// the result in solution.factor.
-  /// @param at  point of the model at solution.x
-  void factor_at(SpanSolution& solution, SpanPoint& at);
-
- private:
-  Pool<NewtonFactor> factors_;
-  Eigen::MatrixXd hessian_;  // Hessian of the next factor
-};
-
 /// Broyden's updates of Newton steps that use the factor of an earlier point. The steps converge
 /// superlinearly and cost only products of vectors (Deuflhard, Newton Methods for Nonlinear
 /// Problems, algorithm QNERR).
@@ -101,9 +88,11 @@ struct NewtonOptions {
   Deadline deadline{};  ///< ends the iteration as `time_limit`
 };
 
-/// Buffers of newton_solve(), kept from one call to the next.
+/// Buffers of newton_solve(), kept from one call to the next. Those of a factor or a point are
+/// reused once nobody holds it any more.
 struct NewtonBuffers {
-  NewtonFactors factors;
+  Pool<NewtonFactor> factors;
+  Eigen::MatrixXd hessian;  ///< Hessian of the next factor
   Pool<SpanPoint> points;
   BroydenSteps broyden;
   std::shared_ptr<SpanPoint> here;  ///< point of the solution
@@ -112,6 +101,10 @@ struct NewtonBuffers {
   Eigen::VectorXd trial_x, trial_multipliers, lowest_mode;
   Eigen::MatrixXd near_null_modes;
 
+  /// Factors the second variation of E - mu . c with the constraints at the solution, and stores
+  /// the result in solution.factor.
+  /// @param at  point of the model at solution.x
+  void factor_at(SpanSolution& solution, SpanPoint& at);
   [[nodiscard]] std::shared_ptr<SpanPoint> new_point(const SpanEnergy& model) {
     return points.take([&](const SpanPoint& kept) { return kept.x.size() == model.size(); });
   }

@@ -20,14 +20,14 @@ constexpr double largest_share = 0.5;
 
 }  // namespace
 
-void NewtonFactors::factor_at(SpanSolution& solution, SpanPoint& at) {
+void NewtonBuffers::factor_at(SpanSolution& solution, SpanPoint& at) {
   solution.factor.reset();
-  solution.model->hessian(at, solution.multipliers, hessian_);
+  solution.model->hessian(at, solution.multipliers, hessian);
   // Buffers of the same size are reused.
-  solution.factor = factors_.take([&](const NewtonFactor& kept) {
-    return kept.system.has_size(hessian_.rows(), at.jacobian.rows());
+  solution.factor = factors.take([&](const NewtonFactor& kept) {
+    return kept.system.has_size(hessian.rows(), at.jacobian.rows());
   });
-  solution.factor->system.compute(hessian_, at.jacobian);
+  solution.factor->system.compute(hessian, at.jacobian);
   solution.factor->scale = solution.scale_of_forces();
   solution.factor->x = solution.x;
   solution.factor->multipliers = solution.multipliers;
@@ -44,7 +44,7 @@ void NewtonStep::use_given_factor() {
 
 void NewtonStep::factor() {
   factor_.reset();
-  buffers_.factors.factor_at(solution_, *buffers_.here);
+  buffers_.factor_at(solution_, *buffers_.here);
   factor_ = solution_.factor;
   factor_point_ = FactorPoint::this_point;
   buffers_.broyden.clear();

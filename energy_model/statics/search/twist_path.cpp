@@ -244,7 +244,7 @@ class TwistPath {
   }
 
   void factor_at(SpanSolution& solution) {
-    workspace_.factors().factor_at(solution, *solution.at_x());
+    workspace_.newton().factor_at(solution, *solution.at_x());
   }
 
   /// Descends from a displaced shape to a stable one.

@@ -242,7 +242,7 @@ SpanSolution solve_from_given_start(const Span& span, const SpanOptions& options
   if (!leaves) return solution;
   std::optional<SpanSolution> lower = leave_saddle(solution, options, workspace);
   if (!lower) return solution;
-  certify(*lower, workspace.factors());
+  certify(*lower, workspace.newton());
   lower->evaluations += solution.evaluations;
   return succeeded(lower->status) ? std::move(*lower) : std::move(solution);
 }

@@ -265,7 +265,7 @@ std::optional<Span> adapted_mesh(const LocalSolver& on, const SpanSolution& shap
 SpanSolution certified_solution(SpanSolution solution, const SpanOptions& options,
                                 SpanWorkspace& workspace) {
   const int spent = solution.evaluations;
-  certify(solution, workspace.factors());
+  certify(solution, workspace.newton());
   solution.evaluations = spent;
   const bool asks = solution.status == SolveStatus::near_singular ||
                     (is_result(solution, options) && solution.error > largest_unrefined_error);
@@ -284,7 +284,7 @@ SpanSolution certified_solution(SpanSolution solution, const SpanOptions& option
   // coefficients resolve it.
   if (!solution.resolved) finer = refine(on, std::move(finer));
   finer.resolved = finer.resolved || solution.resolved;
-  certify(finer, workspace.factors());
+  certify(finer, workspace.newton());
   const int evaluations = solution.evaluations + finer.evaluations;
   // More coefficients may determine a shape that has a zero mode, along which rounding moves it.
   const bool determined = finer.is_equilibrium() && !solution.is_equilibrium();

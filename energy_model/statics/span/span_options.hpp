@@ -78,7 +78,6 @@ class SpanWorkspace {
   /// Returns a solution's unknowns with another number of coefficients; not an equilibrium yet.
   [[nodiscard]] SpanSolution with_terms(const SpanSolution& solution, int terms);
   [[nodiscard]] NewtonBuffers& newton() { return newton_; }
-  [[nodiscard]] NewtonFactors& factors() { return newton_.factors; }
 
  private:
   Pool<SpanEnergy> models_;
