@@ -1,5 +1,7 @@
 #pragma once
 
+#include <array>
+#include <cstddef>
 #include <functional>
 #include <limits>
 #include <memory>
@@ -20,15 +22,8 @@ enum class ContactKind {
 
 /// Returns the name of a contact kind, as files contain it.
 [[nodiscard]] constexpr const char* to_string(ContactKind kind) {
-  switch (kind) {
-    case ContactKind::lying:
-      return "lying";
-    case ContactKind::touching:
-      return "touching";
-    case ContactKind::tip:
-      break;
-  }
-  return "tip";
+  constexpr std::array names = {"lying", "touching", "tip"};
+  return names[static_cast<std::size_t>(kind)];
 }
 
 /// One contact of the rod with a rigid obstacle.

@@ -1,5 +1,8 @@
 #pragma once
 
+#include <array>
+#include <cstddef>
+
 namespace dlo::energy_model {
 
 /// Outcome of a solver. A usable shape is `converged` or `roundoff_limited` (succeeded()). The
@@ -26,27 +29,17 @@ enum class SolveStatus {
 
 /// Returns the status in words, for messages.
 [[nodiscard]] constexpr const char* to_string(SolveStatus status) {
-  switch (status) {
-    case SolveStatus::not_run:
-      return "not run";
-    case SolveStatus::converged:
-      return "converged";
-    case SolveStatus::roundoff_limited:
-      return "limited by roundoff";
-    case SolveStatus::saddle:
-      return "an unstable equilibrium (saddle)";
-    case SolveStatus::near_singular:
-      return "next to a fold or bifurcation";
-    case SolveStatus::not_verified:
-      return "not verified";
-    case SolveStatus::evaluation_limit:
-      return "evaluation limit reached";
-    case SolveStatus::time_limit:
-      return "time limit reached";
-    case SolveStatus::failed:
-      break;
-  }
-  return "failed";
+  constexpr std::array names = {"not run",
+                                "converged",
+                                "limited by roundoff",
+                                "an unstable equilibrium (saddle)",
+                                "next to a fold or bifurcation",
+                                "not verified",
+                                "evaluation limit reached",
+                                "time limit reached",
+                                "failed"};
+  static_assert(names.size() == static_cast<std::size_t>(SolveStatus::failed) + 1);
+  return names[static_cast<std::size_t>(status)];
 }
 
 }  // namespace dlo::energy_model

@@ -1,5 +1,7 @@
 #pragma once
 
+#include <array>
+#include <cstddef>
 #include <functional>
 #include <limits>
 #include <span>
@@ -35,17 +37,8 @@ enum class ModePlane {
 
 /// Returns the name of the plane, as files contain it.
 [[nodiscard]] constexpr const char* to_string(ModePlane plane) {
-  switch (plane) {
-    case ModePlane::in:
-      return "in";
-    case ModePlane::out:
-      return "out";
-    case ModePlane::mixed:
-      return "mixed";
-    case ModePlane::spatial:
-      break;
-  }
-  return "spatial";
+  constexpr std::array names = {"in", "out", "mixed", "spatial"};
+  return names[static_cast<std::size_t>(plane)];
 }
 
 /// A free vibration about an equilibrium.
