@@ -28,8 +28,7 @@ bool integrate(int (*rates)(double, const double*, double*, void*), void* data, 
       return false;
     }
   }
-  if (s < length) return false;
-  return std::isfinite(std::accumulate(y.begin(), y.end(), 0.0));
+  return s >= length && std::isfinite(std::accumulate(y.begin(), y.end(), 0.0));
 }
 
 }  // namespace dlo::energy_model

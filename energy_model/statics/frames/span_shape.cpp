@@ -257,11 +257,10 @@ Eigen::VectorXd roll_of(const Eigen::Matrix3Xd& tangents, const Eigen::Matrix3Xd
 
 Samples SpanShape::sample(std::span<const double> s) const {
   const auto count = static_cast<Eigen::Index>(s.size());
-  Samples samples{{},
-                  Eigen::Matrix3Xd(3, count),
-                  Eigen::Matrix3Xd(3, count),
-                  Eigen::Matrix3Xd(3, count),
-                  Eigen::Matrix3Xd(3, count)};
+  Samples samples;
+  for (auto* m : {&samples.points, &samples.tangents, &samples.curvature, &samples.d1}) {
+    m->resize(3, count);
+  }
   Sampler sampler(*this);
   for (Eigen::Index i = 0; i < count; ++i) {
     sampler.evaluate_at(s[static_cast<std::size_t>(i)], i, samples);

@@ -44,7 +44,7 @@ class FreeBoundaryNewton {
         workspace_(workspace),
         factor_(solution.factor),
         ends_(free_boundaries(solution.model->span())),
-        residual_(residual_of(solution)),
+        residual_(free_boundary_residual(solution, ends_)),
         jacobian_(residual_.size(), residual_.size()) {}
 
   int run() {
@@ -65,10 +65,6 @@ class FreeBoundaryNewton {
   }
 
  private:
-  [[nodiscard]] Eigen::VectorXd residual_of(const SpanSolution& solution) const {
-    return free_boundary_residual(solution, ends_);
-  }
-
   [[nodiscard]] Eigen::VectorXd limit_step(Eigen::VectorXd displacement) const {
     const Span& span = solution_.model->span();
     double share = 1;
@@ -124,7 +120,7 @@ class FreeBoundaryNewton {
       if (trial.is_equilibrium()) break;
     }
     if (!trial.is_equilibrium()) return false;
-    const Eigen::VectorXd residual = residual_of(trial);
+    const Eigen::VectorXd residual = free_boundary_residual(trial, ends_);
     const Eigen::RowVectorXd along = displacement.transpose() / displacement.squaredNorm();
     jacobian_ += (residual - residual_ - jacobian_ * displacement) * along;
     residual_ = residual;
@@ -149,7 +145,7 @@ class FreeBoundaryNewton {
       if (!perturbed.is_equilibrium())
         perturbed = solve_with_moved_ends(displacement, NewtonMethod::newton);
       if (!perturbed.is_equilibrium()) return false;
-      jacobian_.col(i) = (residual_of(perturbed) - residual_) / displacement[i];
+      jacobian_.col(i) = (free_boundary_residual(perturbed, ends_) - residual_) / displacement[i];
       displacement[i] = 0;
     }
     return true;

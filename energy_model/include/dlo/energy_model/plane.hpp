@@ -16,10 +16,6 @@ struct Plane {
   [[nodiscard]] Eigen::Vector2d coordinates(const Eigen::Vector3d& vector) const {
     return {x.dot(vector), y.dot(vector)};
   }
-  /// Returns the direction in space that has these components.
-  [[nodiscard]] Eigen::Vector3d vector(const Eigen::Vector2d& coordinates) const {
-    return x * coordinates.x() + y * coordinates.y();
-  }
 };
 
 /// Finds the plane that contains the direction of a rod at `origin` and all forces. If all are
