@@ -116,24 +116,27 @@ class TrustRegionDescent {
       solution_.multipliers = multipliers_;
       return solution_.fail("no shape at the positions of the grips was found from this start");
     }
+    // Newton's method may still converge from where the steps or the radius have ended.
+    SolveStatus status = SolveStatus::roundoff_limited;
     double radius = options_.radius;
-    for (int i = 0; i < most_iterations; ++i) {
+    for (int i = 0; i < most_iterations && !(radius < smallest_radius); ++i) {
       if (options_.deadline.passed()) {
-        accept_point(here);
-        return solution_.finish(SolveStatus::time_limit);
+        status = SolveStatus::time_limit;
+        break;
       }
       linearise(here);
       const std::optional<Eigen::VectorXd> step = best_step(radius);
       if (!step) {
-        accept_point(here);
-        return solution_.finish(SolveStatus::converged);
+        status = SolveStatus::converged;
+        break;
       }
       radius = try_step(here, *step, radius);
-      if (radius < smallest_radius) break;
     }
-    accept_point(here);
-    // Newton's method may still converge from here.
-    solution_.finish(SolveStatus::roundoff_limited);
+    solution_.x = here.x;
+    solution_.energy = here.energy;
+    solution_.multipliers = multipliers_;
+    solution_.residual = projected_gradient_.norm();
+    solution_.finish(status);
   }
 
  private:
@@ -192,13 +195,6 @@ class TrustRegionDescent {
     std::swap(here, trial_);
     if (ratio > 0.75 && length_ > 0.9 * radius) return std::min(largest_radius, 2 * radius);
     return ratio < 0.25 ? radius / 2 : radius;
-  }
-
-  void accept_point(const SpanPoint& here) {
-    solution_.x = here.x;
-    solution_.energy = here.energy;
-    solution_.multipliers = multipliers_;
-    solution_.residual = projected_gradient_.norm();
   }
 
   SpanSolution& solution_;
