@@ -141,25 +141,6 @@ struct SmallEigenvalues {
   Eigen::Index zero = 0;       // number of rigid-body modes, or of zeros by rounding if larger
 };
 
-/// Classifies the small eigenvalues of a reduced Hessian.
-/// @param bound    magnitude up to which an eigenvalue counts as neutral
-/// @param free     number of rigid-body modes, whose eigenvalues are zero
-/// @param nothing  magnitude up to which an eigenvalue counts as zero for any direction; negative:
-///   none
-SmallEigenvalues small_eigenvalues(ReducedHessian& hessian, double bound, Eigen::Index free,
-                                   double nothing) {
-  const Eigen::VectorXd eigenvalues = smallest_eigenvalues(hessian, 2 * bound);
-  SmallEigenvalues result;
-  result.smallest = eigenvalues.size() > 0 ? eigenvalues[0] : 1;
-  Eigen::VectorXd sizes = eigenvalues.cwiseAbs();
-  std::sort(sizes.begin(), sizes.end());
-  result.zero = std::max(std::min(free, (sizes.array() <= bound).count()),
-                         (sizes.array() <= nothing).count());
-  result.neutral_directions = static_cast<int>((sizes.array() <= bound).count() - result.zero);
-  result.nearest_zero = result.zero < sizes.size() ? sizes[result.zero] : 1;
-  return result;
-}
-
 /// Direction of the eigenvalue nearest to zero without the first `free` ones, with the multipliers
 /// that belong to it: a vector v = (z, nu) of Newton's system with |z| = 1.
 struct SoftMode {
@@ -276,10 +257,22 @@ class Certification {
     return false;
   }
 
+  /// Classifies the small eigenvalues of a reduced Hessian.
+  /// @param rigid  number of rigid-body modes, whose eigenvalues are zero
   [[nodiscard]] SmallEigenvalues eigenvalues_of(ReducedHessian& hessian, Eigen::Index rigid) const {
+    const Eigen::VectorXd eigenvalues = smallest_eigenvalues(hessian, 2 * bound_);
+    SmallEigenvalues result;
+    result.smallest = eigenvalues.size() > 0 ? eigenvalues[0] : 1;
+    Eigen::VectorXd sizes = eigenvalues.cwiseAbs();
+    std::sort(sizes.begin(), sizes.end());
+    const Eigen::Index neutral = (sizes.array() <= bound_).count();
     // Obstacles may leave rigid-body motions free that rigid_body_modes() does not count; these
     // have zero eigenvalues up to rounding.
-    return small_eigenvalues(hessian, bound_, rigid, obstacles_ ? 128 * rounding_of(scale_) : -1);
+    const double rounding = obstacles_ ? 128 * rounding_of(scale_) : -1;
+    result.zero = std::max(std::min(rigid, neutral), (sizes.array() <= rounding).count());
+    result.neutral_directions = static_cast<int>(neutral - result.zero);
+    result.nearest_zero = result.zero < sizes.size() ? sizes[result.zero] : 1;
+    return result;
   }
 
   /// Computes Newton's step and the second variation at the shape.

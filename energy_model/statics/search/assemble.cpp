@@ -313,9 +313,17 @@ class Assembly {
     std::vector<PlacedShape> shapes;
     for (std::size_t i = 0; i < placed.size(); ++i) {
       if (solutions[i]->x.size() == 0) continue;
-      shapes.push_back(placed_shape(placed[i], *solutions[i], l_));
-      if (placed[i].span.has_material_directors()) {
-        shapes.back().ahead = [ahead = placed[i].ahead](double) { return ahead; };
+      const PlacedSpan& place = placed[i];
+      const double end = place.reversed ? place.start : place.start + place.span.length * l_;
+      shapes.push_back({solutions[i]->model->shape(solutions[i]->x),
+                        place.reversed,
+                        place.start,
+                        end,
+                        place.frame.transpose(),
+                        place.anchor_position,
+                        {}});
+      if (place.span.has_material_directors()) {
+        shapes.back().ahead = [ahead = place.ahead](double) { return ahead; };
       }
     }
     const bool is_whole = shapes.size() == placed.size();
@@ -344,17 +352,6 @@ class Assembly {
 };
 
 }  // namespace
-
-PlacedShape placed_shape(const PlacedSpan& placed, const SpanSolution& solution, double length) {
-  const double end = placed.reversed ? placed.start : placed.start + placed.span.length * length;
-  return {solution.model->shape(solution.x),
-          placed.reversed,
-          placed.start,
-          end,
-          placed.frame.transpose(),
-          placed.anchor_position,
-          {}};
-}
 
 Samples sample(const std::vector<PlacedShape>& shapes, double length,
                std::span<const double> arc_lengths) {

@@ -23,10 +23,6 @@ struct PlacedShape {
   std::function<double(double)> ahead;
 };
 
-/// Returns the placed shape of a solution, without `ahead`.
-[[nodiscard]] PlacedShape placed_shape(const PlacedSpan& placed, const SpanSolution& solution,
-                                       double length);
-
 /// Samples the rod at arc lengths [m]; with d1 if its first shape has `ahead`.
 /// @param length  of the rod [m]
 [[nodiscard]] Samples sample(const std::vector<PlacedShape>& shapes, double length,

@@ -8,19 +8,6 @@
 
 namespace dlo::energy_model {
 
-DirectionResidual direction_residual(const Eigen::Vector3d& p, const Eigen::Vector3d& to,
-                                     const Eigen::Vector3d& across) {
-  const double n = across.dot(p);
-  const double d = 1 + to.dot(p);
-  const Eigen::Vector3d gradient = 2 * (across / d - n / (d * d) * to);
-  const Eigen::Matrix3d second =
-      -2 / (d * d) * (across * to.transpose() + to * across.transpose()) +
-      4 * n / (d * d * d) * to * to.transpose();
-  const Eigen::Matrix3d turn = cross_matrix(p);
-  return {2 * n / d, p.cross(gradient),
-          spin_hessian(p, gradient) + turn.transpose() * second * turn};
-}
-
 void GripRows::reset(const Span& span, const std::vector<Element>& elements,
                      const LegendreTable& table) {
   axes_ = span.planar ? 2 : 3;
@@ -75,9 +62,18 @@ void GripRows::turn_end_clamp(const Eigen::Vector3d& direction, const Eigen::Vec
 
 DirectionResidual GripRows::residual_of(const DirectionRow& row, const SpatialPoint& at) {
   const Eigen::Matrix3d frame = at.frames.frame_after(at.state, row.element);
-  if (!row.of_d1) return direction_residual(frame.col(2), row.to, row.across);
-  const Eigen::Vector3d d1 = std::cos(at.psi) * frame.col(0) + std::sin(at.psi) * frame.col(1);
-  return direction_residual(d1, row.to, row.across);
+  Eigen::Vector3d p = frame.col(2);
+  if (row.of_d1) p = std::cos(at.psi) * frame.col(0) + std::sin(at.psi) * frame.col(1);
+  const Eigen::Vector3d& to = row.to;
+  const double n = row.across.dot(p);
+  const double d = 1 + to.dot(p);
+  const Eigen::Vector3d gradient = 2 * (row.across / d - n / (d * d) * to);
+  const Eigen::Matrix3d second =
+      -2 / (d * d) * (row.across * to.transpose() + to * row.across.transpose()) +
+      4 * n / (d * d * d) * to * to.transpose();
+  const Eigen::Matrix3d turn = cross_matrix(p);
+  return {2 * n / d, p.cross(gradient),
+          spin_hessian(p, gradient) + turn.transpose() * second * turn};
 }
 
 void GripRows::constrain(const PlanarPoint& at, Eigen::Ref<Eigen::VectorXd> residual,

@@ -20,10 +20,6 @@ struct DirectionResidual {
   Eigen::Matrix3d curvature = Eigen::Matrix3d::Zero();
 };
 
-[[nodiscard]] DirectionResidual direction_residual(const Eigen::Vector3d& p,
-                                                   const Eigen::Vector3d& to,
-                                                   const Eigen::Vector3d& across);
-
 /// A planar span at unknowns x: its frames, their state and the tangents at the nodes (nodes x 3).
 struct PlanarPoint {
   const PlanarFrames& frames;
