@@ -360,10 +360,8 @@ class Certification {
   }
 
   void check_out_of_plane() {
-    const SecondDerivatives across =
-        second_derivatives_out_of_plane(model_, *point_, solution_.multipliers);
-    ReducedHessian reduced;
-    reduced.compute(across.hessian, across.jacobian);
+    ReducedHessian reduced =
+        reduced_hessian(second_derivatives_out_of_plane(model_, *point_, solution_.multipliers));
     const SmallEigenvalues found = eigenvalues_of(reduced, rigid_.out_of_plane);
     solution_.smallest_eigenvalue = std::min(solution_.smallest_eigenvalue, found.smallest);
     solution_.neutral_directions += found.neutral_directions;

@@ -271,9 +271,7 @@ class TwistPath {
   /// Displaces an unstable shape along a direction of negative curvature and descends. @return a
   /// stable equilibrium; std::nullopt if none is found
   [[nodiscard]] std::optional<SpanSolution> descend_from(const SpanSolution& from) {
-    const SecondDerivatives at = second_derivatives(from);
-    ReducedHessian reduced;
-    reduced.compute(at.hessian, at.jacobian);
+    ReducedHessian reduced = reduced_hessian(second_derivatives(from));
     std::optional<Eigen::VectorXd> direction = negative_curvature_direction(reduced);
     // Near a fold the shape moves along the unstable direction, as in the last step.
     if (!direction && last_step_.size() == from.x.size() && last_step_.norm() > 0) {

@@ -107,9 +107,7 @@ SpanSolution from_given_start(LocalSolver& on) {
 /// direction.
 std::optional<Eigen::VectorXd> mode_nearest_zero(const SpanSolution& solution) {
   SpanEnergy& model = *solution.model;
-  const SecondDerivatives at = second_derivatives(solution);
-  ReducedHessian reduced;
-  reduced.compute(at.hessian, at.jacobian);
+  ReducedHessian reduced = reduced_hessian(second_derivatives(solution));
   const Eigen::Index free = rigid_body_modes(model.span(), solution.at_x()->tangents()).in_plane;
   if (free >= model.size() - model.constraints()) return std::nullopt;
   return eigenvector_by_magnitude(reduced, free);
@@ -119,10 +117,8 @@ std::optional<Eigen::VectorXd> mode_nearest_zero(const SpanSolution& solution) {
 
 std::optional<NegativeCurvature> negative_curvature(const SpanSolution& solution) {
   SpanEnergy& model = *solution.model;
-  SecondDerivatives at = second_derivatives(solution);
-  ReducedHessian reduced;
-  reduced.compute(at.hessian, at.jacobian);
-  if (std::optional<Eigen::VectorXd> within = negative_curvature_direction(reduced)) {
+  if (std::optional<Eigen::VectorXd> within =
+          negative_curvature_direction(reduced_hessian(second_derivatives(solution)))) {
     return NegativeCurvature{model.span(), std::move(*within)};
   }
   if (!model.span().planar || model.span().stays_in_plane()) return std::nullopt;
@@ -131,17 +127,15 @@ std::optional<NegativeCurvature> negative_curvature(const SpanSolution& solution
   NegativeCurvature out{model.span(), {}};
   out.span.planar = false;
   SpanEnergy in_space(out.span, solution.terms);
-  at = second_derivatives_at(in_space, model, solution.x);
-  reduced.compute(at.hessian, at.jacobian);
-  if (std::optional<Eigen::VectorXd> descent = negative_curvature_direction(reduced)) {
+  if (std::optional<Eigen::VectorXd> descent = negative_curvature_direction(
+          reduced_hessian(second_derivatives_at(in_space, model, solution.x)))) {
     out.direction = std::move(*descent);
     return out;
   }
   // Deep within a box, midway between two faces, the energy has a ridge: the model in space has one
   // of its slopes there, and only the tilts of the planar model include both.
-  at = second_derivatives_out_of_plane(model, *solution.at_x(), solution.multipliers);
-  reduced.compute(at.hessian, at.jacobian);
-  const std::optional<Eigen::VectorXd> tilts = negative_curvature_direction(reduced);
+  const std::optional<Eigen::VectorXd> tilts = negative_curvature_direction(reduced_hessian(
+      second_derivatives_out_of_plane(model, *solution.at_x(), solution.multipliers)));
   if (!tilts) return std::nullopt;
   out.direction = Eigen::VectorXd::Zero(model.size() + tilts->size());
   out.direction.tail(tilts->size()) = *tilts;

@@ -154,22 +154,17 @@ class GrippedField {
         .normalized();
   }
 
-  /// Whether a clamp or a taut neighbour determines the tangent at an end of a segment.
-  [[nodiscard]] bool is_held(bool outermost, bool clamped, std::size_t i, int neighbour) const {
-    if (outermost) return clamped;
-    return segments_[neighbour < 0 ? i - 1 : i + 1].taut();
-  }
-
   [[nodiscard]] Eigen::Vector3d bent(std::size_t i, double u) const {
     if (segments_[i].taut() && pattern_.loops == 0) return stretched(i, u);
     Eigen::Vector3d t = arch(i, u);
     if (pattern_.loops == 0) {
+      // A clamp or a taut neighbour determines the tangent at an end.
       if (segments_[i].begin_direction ||
-          is_held(i == 0, span_.start_direction.has_value(), i, -1)) {
+          (i == 0 ? span_.start_direction.has_value() : segments_[i - 1].taut())) {
         t += std::pow(1 - u, 4) * (segments_[i].begin_tangent - arch(i, 0));
       }
       if (segments_[i].end_direction ||
-          is_held(i + 1 == chords_.size(), span_.end_direction.has_value(), i, 1)) {
+          (i + 1 == chords_.size() ? span_.end_direction.has_value() : segments_[i + 1].taut())) {
         t += std::pow(u, 4) * (segments_[i].end_tangent - arch(i, 1));
       }
     }

@@ -2,6 +2,7 @@
 
 #include <Eigen/Core>
 
+#include "linear/reduced_hessian.hpp"
 #include "strain/span_energy.hpp"
 #include "strain/span_solution.hpp"
 
@@ -17,6 +18,13 @@ struct SecondDerivatives {
                                                    const Eigen::VectorXd& multipliers);
 [[nodiscard]] inline SecondDerivatives second_derivatives(const SpanSolution& solution) {
   return second_derivatives(*solution.model, solution.x, solution.multipliers);
+}
+
+/// Returns the Hessian restricted to the directions that the constraints leave free.
+[[nodiscard]] inline ReducedHessian reduced_hessian(const SecondDerivatives& at) {
+  ReducedHessian reduced;
+  reduced.compute(at.hessian, at.jacobian);
+  return reduced;
 }
 
 /// Returns the second derivatives at an equilibrium x that was found in another model of the same
