@@ -43,7 +43,18 @@ void PlanarFrames::reset(const std::vector<Element>& elements, int terms,
     terms_ = terms;
     free_start_ = free_start;
     table_ = &legendre_table(terms);
-    tabulate_angles();
+    const Eigen::Index nodes = table_->nodes.size();
+    const Eigen::Index count = std::ssize(elements_);
+    angle_.setZero(count * nodes, free_start_ + count * terms_);
+    if (free_start_ == 1) angle_.col(0).setOnes();
+    for (Eigen::Index e = 0; e < count; ++e) {
+      const Eigen::Index column = free_start_ + e * terms_;
+      angle_.block(e * nodes, column, nodes, terms_) =
+          element_rotation(e) * table_->integrals.leftCols(terms_);
+      // Only p_0 contributes to the rotation over a whole element.
+      angle_.col(column).tail((count - e - 1) * nodes).setConstant(element_rotation(e));
+    }
+    angle_transposed_ = angle_.transpose();
   }
   natural_angle_.resize(0);
   if (natural.empty()) return;
@@ -53,21 +64,6 @@ void PlanarFrames::reset(const std::vector<Element>& elements, int terms,
     const Element& element = elements_[static_cast<std::size_t>(q / Q)];
     natural_angle_[q] = natural.integral(element.begin + element.length * table_->nodes[q % Q]).x();
   }
-}
-
-void PlanarFrames::tabulate_angles() {
-  const Eigen::Index Q = table_->nodes.size();
-  const Eigen::Index count = std::ssize(elements_);
-  angle_.setZero(count * Q, free_start_ + count * terms_);
-  if (free_start_ == 1) angle_.col(0).setOnes();
-  for (Eigen::Index e = 0; e < count; ++e) {
-    const Eigen::Index column = free_start_ + e * terms_;
-    angle_.block(e * Q, column, Q, terms_) =
-        element_rotation(e) * table_->integrals.leftCols(terms_);
-    // Only p_0 contributes to the rotation over a whole element.
-    angle_.col(column).tail((count - e - 1) * Q).setConstant(element_rotation(e));
-  }
-  angle_transposed_ = angle_.transpose();
 }
 
 Eigen::RowVectorXd PlanarFrames::angle_derivatives_after(Eigen::Index element) const {

@@ -93,8 +93,6 @@ class PlanarFrames {
     return elements_[static_cast<std::size_t>(element)].angle(0);
   }
 
-  void tabulate_angles();
-
   std::vector<Element> elements_;
   Eigen::Index terms_ = 0;
   const LegendreTable* table_ = nullptr;

@@ -9,9 +9,6 @@
 namespace dlo::energy_model {
 namespace {
 
-/// Number of coefficients of a free start's rotation: a constant strain over a length of 1.
-constexpr int free_start_terms = 1;
-
 /// Largest acceptable collocation defect, and limits of its correction. After Magnus steps two
 /// corrections suffice for all strains that the nodes resolve. For other strains a defect remains
 /// that no correction removes; it is recognised by exceeding `largest_square` times the square of
@@ -66,7 +63,8 @@ void RodFrames::reset(const std::vector<Element>& elements, int terms, const Eig
     columns_ += count;
     nodes_ += panels_.back().nodes();
   };
-  if (free_start) add(1, {1, 1, 1}, free_start_terms);
+  // A free start's rotation is a constant strain over a length of 1, with one coefficient.
+  if (free_start) add(1, {1, 1, 1}, 1);
   turn_nodes_ = nodes_;
   elements_ = elements.size();
   for (const Element& element : elements) {

@@ -153,15 +153,6 @@ std::vector<ContactPart> contacts_of(const PlacedSpan& place, const SpanSolution
   return parts;
 }
 
-ContactPart contact_in_newtons(ContactPart part, double force_unit, double length) {
-  part.force *= force_unit;
-  part.moment *= force_unit * length;
-  part.begin_force *= force_unit;
-  part.end_force *= force_unit;
-  part.largest_pressure *= force_unit / length;
-  return part;
-}
-
 /// Whether one status claims less than another. The distinction between equilibria and other shapes
 /// precedes that between kinds of equilibria.
 bool is_worse(SolveStatus status, SolveStatus than) {
@@ -271,10 +262,15 @@ class Assembly {
       result_.obstacles[place.span.soft_obstacles[w].index] += to_newtons(place, obstacles[w]);
     }
     const std::vector<ContactForce> pushes = model.contact_forces(*at, solution.multipliers);
-    for (const ContactPart& contact : contacts_of(place, solution, pushes, l_)) {
+    for (ContactPart& contact : contacts_of(place, solution, pushes, l_)) {
       carried += place.frame * contact.force;
-      result_.obstacles[contact.obstacle] += force_unit_ * contact.force;
-      result_.contacts.push_back(contact_in_newtons(contact, force_unit_, l_));
+      contact.force *= force_unit_;
+      contact.moment *= force_unit_ * l_;
+      contact.begin_force *= force_unit_;
+      contact.end_force *= force_unit_;
+      contact.largest_pressure *= force_unit_ / l_;
+      result_.obstacles[contact.obstacle] += contact.force;
+      result_.contacts.push_back(contact);
     }
     const Eigen::Index axes = model.span().planar ? 2 : 3;
     const auto to_space = [&](const Eigen::Vector3d& torque) {

@@ -152,7 +152,9 @@ class EnergySolver::State {
         std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
     for (Equilibrium& equilibrium : result) {
       equilibrium.seconds = seconds;
-      if (deadline.passed()) add_time_limit(equilibrium);
+      if (!deadline.passed() || succeeded(equilibrium.status)) continue;
+      if (equilibrium.message.find("time limit") != std::string::npos) continue;
+      equilibrium.message += "; the search ended at its time limit";
     }
     return result;
   }
@@ -174,13 +176,6 @@ class EnergySolver::State {
   [[nodiscard]] bool followed() const { return followed_; }
 
  private:
-  /// Adds the time limit to the message of an unsuccessful search, unless the message already names
-  /// it.
-  static void add_time_limit(Equilibrium& result) {
-    if (succeeded(result.status) || result.message.find("time limit") != std::string::npos) return;
-    result.message += "; the search ended at its time limit";
-  }
-
   /// Solves with one obstacle of each set of similar ones. If the rod enters an omitted obstacle,
   /// that one replaces the obstacles similar to it in the next attempt.
   /// @return empty if no obstacle was omitted, or if the result is not certified with all obstacles

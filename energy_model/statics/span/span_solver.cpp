@@ -266,8 +266,8 @@ class Search {
       const SpanEnergy::Estimate estimated = model.estimate(shape.tangents);
       // A fit with few coefficients is smoother, and satisfying the constraints may straighten it.
       if (estimated.energy - estimated.bending / 2 > most) continue;
-      constexpr int no_corrections = 0;
-      trial.evaluate(model.fit(shape, no_corrections), point);
+      // The fit is not corrected: satisfying the constraints follows.
+      trial.evaluate(model.fit(shape, 0), point);
       if (!restore_constraints(trial, point, largest_constraint_residual, scratch, most)) {
         start.cost = std::max(start.cost, most);
         continue;

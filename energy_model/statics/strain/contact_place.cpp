@@ -45,12 +45,6 @@ Eigen::MatrixXd ContactEvaluation::along(const Eigen::MatrixX3d& vectors) const 
   return result;
 }
 
-Eigen::MatrixX3d ContactEvaluation::by_node(Eigen::Index row) const {
-  Eigen::MatrixX3d result(by_tangent[0].rows(), 3);
-  result << by_tangent[0].col(row), by_tangent[1].col(row), by_tangent[2].col(row);
-  return result;
-}
-
 void ContactEvaluation::add(const Eigen::Ref<const Eigen::VectorXd>& multipliers,
                             Eigen::MatrixX3d& carried) const {
   for (std::size_t axis = 0; axis < 3; ++axis) {

@@ -29,9 +29,8 @@ struct ContactEvaluation {
 
   /// Returns the products of the rows' derivatives with the vectors at the nodes, nodes x rows.
   [[nodiscard]] Eigen::MatrixXd along(const Eigen::MatrixX3d& vectors) const;
-  /// Returns the gradient of a row by the tangents, nodes x 3.
-  [[nodiscard]] Eigen::MatrixX3d by_node(Eigen::Index row) const;
-  /// Adds the sum of multipliers times by_node() to `carried`.
+  /// Adds the sum of the multipliers times the rows' gradients by the tangents to `carried`, nodes
+  /// x 3.
   void add(const Eigen::Ref<const Eigen::VectorXd>& multipliers, Eigen::MatrixX3d& carried) const;
 };
 

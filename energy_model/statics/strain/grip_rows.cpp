@@ -21,10 +21,6 @@ void GripRows::reset(const Span& span, const std::vector<Element>& elements,
     reach_.col(static_cast<Eigen::Index>(j)) = reach.begin(elements_before(elements, holds_[j].at));
     reach_signs_.push_back(reach.signs(holds_[j].at));
   }
-  list_directions(span, elements);
-}
-
-void GripRows::list_directions(const Span& span, const std::vector<Element>& elements) {
   const auto add = [&](Eigen::Index hold, Eigen::Index element, const Eigen::Vector3d& to) {
     // A planar shape bends about d1.
     const Eigen::Matrix3d frame = frame_along(to, Span::d1(to));

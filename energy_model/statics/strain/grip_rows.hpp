@@ -103,7 +103,6 @@ class GripRows {
     bool of_d1 = false;  // constrains d1 instead of the tangent
     double angle = 0;    // in the plane: PlanarFrames::angle_towards(), with whole turns
   };
-  void list_directions(const Span& span, const std::vector<Element>& elements);
   [[nodiscard]] static DirectionResidual residual_of(const DirectionRow& row,
                                                      const SpatialPoint& at);
 

@@ -156,8 +156,9 @@ void SpanEnergy::constrain(SpanPoint& point) const {
     return;
   }
   grips_.constrain(in_space(point), point.residual, point.jacobian);
+  const std::array<Eigen::MatrixXd, 3>& by_tangent = point.contacts.by_tangent;
   for (Eigen::Index i = 0; i < count; ++i) {
-    point.carried = point.contacts.by_node(i);
+    point.carried << by_tangent[0].col(i), by_tangent[1].col(i), by_tangent[2].col(i);
     point.by_unknown.setZero();
     frames_.add_adjoint({&point.carried}, 1, point.frames, point.by_unknown);
     point.jacobian.row(first + i) = point.by_unknown.transpose();
