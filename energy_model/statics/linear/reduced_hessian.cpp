@@ -67,7 +67,9 @@ Eigen::Index padded(Eigen::Index rows) { return (rows + padding - 1) / padding *
 }  // namespace
 
 /// Factors J^T by Householder reflections, column by column.
-void ReducedHessian::reflect_constraints(const Eigen::MatrixXd& jacobian) {
+void ReducedHessian::constrain(const Eigen::MatrixXd& jacobian) {
+  n_ = jacobian.cols();
+  constraints_ = std::min(jacobian.rows(), n_);
   reflections_ = jacobian.topRows(constraints_).transpose();
   tau_.resize(constraints_);
   diagonal_.resize(constraints_);
@@ -87,7 +89,8 @@ void ReducedHessian::reflect_constraints(const Eigen::MatrixXd& jacobian) {
     }
   }
   const double largest = constraints_ > 0 ? diagonal_.cwiseAbs().maxCoeff() : 1;
-  independent_ = (diagonal_.array().abs() > independence_tolerance * largest).all();
+  independent_ = constraints_ == jacobian.rows() &&
+                 (diagonal_.array().abs() > independence_tolerance * largest).all();
 }
 
 /// Factors Z^T H Z + mu. @return whether it is positive definite
@@ -101,13 +104,6 @@ bool ReducedHessian::factor(double mu, Eigen::MatrixXd& lower) const {
     column[j] += mu;
   }
   return dense_kernel().factor({lower.data(), free_count, free_count, lower.rows()});
-}
-
-void ReducedHessian::constrain(const Eigen::MatrixXd& jacobian) {
-  n_ = jacobian.cols();
-  constraints_ = std::min(jacobian.rows(), n_);
-  reflect_constraints(jacobian);
-  independent_ = independent_ && constraints_ == jacobian.rows();
 }
 
 void ReducedHessian::reflect(Eigen::Index i, Vector& v) const {

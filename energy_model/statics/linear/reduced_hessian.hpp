@@ -84,7 +84,6 @@ class ReducedHessian {
 
  private:
   [[nodiscard]] Eigen::Index free() const { return n_ - constraints_; }
-  void reflect_constraints(const Eigen::MatrixXd& jacobian);
   using Vector = Eigen::Ref<Eigen::VectorXd>;
   void reflect(Eigen::Index i, Vector& v) const;
   void turn(Vector v) const;

@@ -85,7 +85,8 @@ std::optional<SpanSolution> start_on_adapted_mesh(const LocalSolver& on) {
 /// alone has converged near the known shape.
 SpanSolution from_given_start(LocalSolver& on) {
   const SpanStart& start = on.options().start;
-  const bool descends = on.options().descends();
+  // A descent from the start may precede Newton's method.
+  const bool descends = start.approach == Approach::descend || on.options().only_descends();
   SpanSolution solution =
       descends ? on.from_start(Start{start.field}) : on.newton_from(start.field);
   solution.followed = is_followed(solution, start);

@@ -62,10 +62,6 @@ struct SpanOptions {
   [[nodiscard]] bool only_follows() const { return start.approach == Approach::follow_only; }
   /// Whether the search ends at the result of a descent from the start.
   [[nodiscard]] bool only_descends() const { return start.approach == Approach::descend_only; }
-  /// Whether a descent from the start precedes Newton's method.
-  [[nodiscard]] bool descends() const {
-    return start.approach == Approach::descend || only_descends();
-  }
 };
 
 /// Buffers that are kept from one solve to the next: models that no solution holds any more are

@@ -17,20 +17,18 @@ void GripRows::reset(const Span& span, const std::vector<Element>& elements,
   directions_.clear();
   if (holds_.empty()) return;
   const PositionOperator reach(span, elements, table);
-  for (std::size_t j = 0; j < holds_.size(); ++j) {
-    reach_.col(static_cast<Eigen::Index>(j)) = reach.begin(elements_before(elements, holds_[j].at));
-    reach_signs_.push_back(reach.signs(holds_[j].at));
-  }
   const auto add = [&](Eigen::Index hold, Eigen::Index element, const Eigen::Vector3d& to) {
     // A planar shape bends about d1.
     const Eigen::Matrix3d frame = frame_along(to, Span::d1(to));
     directions_.push_back({hold, element, to, frame.col(0)});
     if (!span.planar) directions_.push_back({hold, element, to, frame.col(1)});
   };
-  for (std::size_t j = 0; j < holds_.size(); ++j) {
-    if (!holds_[j].direction) continue;
-    add(static_cast<Eigen::Index>(j), elements_before(elements, holds_[j].at) - 1,
-        *holds_[j].direction);
+  for (Eigen::Index j = 0; j < reach_.cols(); ++j) {
+    const Span::Hold& held = holds_[static_cast<std::size_t>(j)];
+    const Eigen::Index before = elements_before(elements, held.at);
+    reach_.col(j) = reach.begin(before);
+    reach_signs_.push_back(reach.signs(held.at));
+    if (held.direction) add(j, before - 1, *held.direction);
   }
   if (!span.end_direction) return;
   const Eigen::Index hold = std::ssize(holds_) - 1;
