@@ -30,8 +30,7 @@ Combinations lowest_combinations(const std::vector<std::vector<SpanCandidate>>& 
       return std::tie(a.unstable, a.energy) < std::tie(b.unstable, b.energy);
     });
     result.truncated = !longer.empty() && (result.truncated || longer.size() > most);
-    if (longer.size() > most)
-      longer.erase(longer.begin() + static_cast<std::ptrdiff_t>(most), longer.end());
+    longer.resize(std::min(longer.size(), most));
     lowest = std::move(longer);
   }
   for (Choice& choice : lowest) result.choices.push_back(std::move(choice.own));

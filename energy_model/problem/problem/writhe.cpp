@@ -145,7 +145,6 @@ std::optional<Writhe> writhe(const Eigen::Matrix3Xd& points, const Eigen::Vector
 std::optional<Writhe> writhe(
     const std::function<Samples(std::span<const double> arc_lengths)>& sample, double begin,
     double end) {
-  constexpr int first_points = 64;
   constexpr int most_points = 2048;
   constexpr int most_crossing_points = 512;
   constexpr double tolerance = 1e-7;
@@ -153,7 +152,7 @@ std::optional<Writhe> writhe(
   Writhe result{0, std::nullopt, 2};
   std::optional<double> crossings;
   bool settled = false;
-  for (int points = first_points; points <= most_points; points *= 2) {
+  for (int points = 64; points <= most_points; points *= 2) {
     std::vector<double> arc_lengths(static_cast<std::size_t>(points) + 1);
     for (int i = 0; i <= points; ++i) {
       arc_lengths[static_cast<std::size_t>(i)] = std::min(begin + (end - begin) * i / points, end);
@@ -167,10 +166,8 @@ std::optional<Writhe> writhe(
     if (!now) return std::nullopt;
     // The error of great arcs between tangents is of second order, so that Richardson's
     // extrapolation applies.
-    const double change = coarse ? std::remainder(*now - *coarse, 2) : 2;
-    const double better = coarse ? *now + change / 3 : *now;
-    result.error =
-        points > first_points ? std::abs(std::remainder(better - result.modulo_two, 2)) : 2;
+    const double better = coarse ? *now + std::remainder(*now - *coarse, 2) / 3 : *now;
+    result.error = coarse ? std::abs(std::remainder(better - result.modulo_two, 2)) : 2;
     result.modulo_two = better;
     coarse = now;
     if (const auto graph = writhe_of_graph(samples.tangents)) {
