@@ -8,11 +8,13 @@
 
 namespace dlo::energy_model {
 
+/// Component of a unit vector, and angle [rad], that count as rounding.
+inline constexpr double direction_rounding = 1e-9;
+
 /// Returns the equivalent angle in (-pi, pi]. An angle of -pi up to rounding becomes pi.
 inline double wrap_to_pi(double angle) {
-  constexpr double rounding = 1e-9;
   const double least = std::remainder(angle, 2 * std::numbers::pi);
-  return least < rounding - std::numbers::pi ? std::numbers::pi : least;
+  return least < direction_rounding - std::numbers::pi ? std::numbers::pi : least;
 }
 
 /// Returns the part of a vector across a unit vector.
@@ -77,10 +79,10 @@ inline Eigen::Matrix3d spin_hessian(const Eigen::Vector3d& p, const Eigen::Vecto
 inline std::optional<Eigen::Quaterniond> shortest_rotation(const Eigen::Vector3d& first,
                                                            const Eigen::Vector3d& last,
                                                            const Eigen::Vector3d& chord) {
-  constexpr double rounding = 1e-9;  // tolerance of the cosine and of the normal's length
-  if (first.dot(last) > rounding - 1) return Eigen::Quaterniond::FromTwoVectors(first, last);
+  if (first.dot(last) > direction_rounding - 1)
+    return Eigen::Quaterniond::FromTwoVectors(first, last);
   const Eigen::Vector3d normal = first.cross(chord);
-  if (!(normal.norm() > rounding)) return std::nullopt;
+  if (!(normal.norm() > direction_rounding)) return std::nullopt;
   return Eigen::Quaterniond(Eigen::AngleAxisd(std::numbers::pi, normal.normalized()));
 }
 

@@ -42,7 +42,6 @@ Eigen::Matrix3d directors_at_start(const Problem& problem, const PlacedSpan& pla
 /// frame.
 void place_start_frame(const Eigen::Vector3d& along, const Eigen::Matrix3d& material_axes,
                        bool is_round, PlacedSpan& placed) {
-  constexpr double rounding = 1e-12;
   Span& span = placed.span;
   const Eigen::Vector3d d1 = Span::d1(along);
   const Eigen::Matrix3d to_own = frame_along(along, d1).transpose() * material_axes;
@@ -51,7 +50,7 @@ void place_start_frame(const Eigen::Vector3d& along, const Eigen::Matrix3d& mate
   const double quarters = std::round(placed.ahead / (pi / 2));
   const double roll_error = placed.ahead - quarters * pi / 2;
   placed.ahead = quarters * pi / 2;
-  if (std::abs(roll_error) > rounding) {
+  if (std::abs(roll_error) > planar_tolerance) {
     span.planar = false;
     span.principal_d1 = Eigen::AngleAxisd(roll_error, along) * frame_along(along, d1).col(0);
   }
@@ -107,17 +106,16 @@ void place_material_directors(const Problem& problem, const OrderedGrip& anchor,
   span.natural.from = 2 * placed.start / l - 1;
   // Whether contact keeps the rod from leaving the plane is decided in space.
   if (!span.soft_obstacles.empty() || !span.rigid_obstacles.empty()) span.planar = false;
-  constexpr double rounding = 1e-12;
   const double largest = span.natural.largest();
   for (Eigen::Vector3d& strain : span.natural.coefficients) {
     if (!span.planar) break;
-    span.planar = strain.tail<2>().norm() <= rounding * largest;
+    span.planar = strain.tail<2>().norm() <= planar_tolerance * largest;
     if (span.planar) strain.tail<2>().setZero();
   }
   for (NaturalStrains::Part& part : span.natural.parts) {
     if (!span.planar) break;
     const Eigen::Vector3d strain = part.over(Eigen::Vector3d::Zero());
-    span.planar = strain.tail<2>().norm() <= rounding * largest;
+    span.planar = strain.tail<2>().norm() <= planar_tolerance * largest;
     if (span.planar && part.bend) part.bend->y() = 0;
     if (span.planar && part.twist) part.twist = 0;
   }

@@ -5,13 +5,9 @@
 #include <cmath>
 
 #include "base/spin.hpp"
+#include "problem/rod_law.hpp"
 
 namespace dlo::energy_model {
-namespace {
-
-constexpr double planar_tolerance = 1e-12;
-
-}  // namespace
 
 std::optional<Plane> find_plane(const Eigen::Vector3d& origin, const Eigen::Vector3d& direction,
                                 const std::vector<Eigen::Vector3d>& forces) {

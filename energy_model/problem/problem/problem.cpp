@@ -77,7 +77,6 @@ void check_material_directors(const Problem& problem) {
 
 /// Whether a rod with material directors bends only about its d2, in a plane with this normal.
 bool bends_in_plane(const Problem& problem, const Eigen::Vector3d& normal) {
-  constexpr double rounding = 1e-12;
   if (!has_material_directors(problem)) return true;
   const auto about_d2 = [](const Eigen::Vector3d& u) { return u.x() == 0 && u.z() == 0; };
   const bool flat = std::ranges::all_of(problem.natural_strains, about_d2) &&
@@ -85,8 +84,8 @@ bool bends_in_plane(const Problem& problem, const Eigen::Vector3d& normal) {
                       return section.natural_curvature.value_or(Eigen::Vector2d::Zero()).x() == 0 &&
                              section.natural_twist.value_or(0) == 0;
                     });
-  return flat &&
-         (!first_clamp(problem) || first_frame(problem).col(1).cross(normal).norm() < rounding);
+  return flat && (!first_clamp(problem) ||
+                  first_frame(problem).col(1).cross(normal).norm() < planar_tolerance);
 }
 
 }  // namespace

@@ -55,9 +55,6 @@ void add_loads(const Problem& problem, const std::function<void(const Eigen::Vec
   }
 }
 
-/// Component of a unit vector that counts as rounding.
-constexpr double direction_rounding = 1e-9;
-
 /// Whether a load moves the rod out of a plane by more than about 1e-6 of its length.
 bool loads_leave_plane(const Problem& problem, const Eigen::Vector3d& normal) {
   constexpr double negligible_load_share = 1e-6;

@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "base/require.hpp"
+#include "base/spin.hpp"
 #include "dlo/energy_model/couple_zero.hpp"
 #include "dlo/energy_model/plane.hpp"
 #include "dlo/energy_model/turns.hpp"
@@ -155,13 +156,12 @@ constexpr const char* couple_requirement =
 
 /// Adds couples about the normal of the span's plane to the loads of the span.
 void place_couples(const Problem& problem, const SpanInterval& stretch, PlacedSpan& placed) {
-  constexpr double rounding = 1e-9;
   const double unit = bending_unit(problem) / problem.length;
   for (const Load& load : problem.loads) {
     if (!stretch.contains(load.at) || load.torque.isZero(0) || clamp_at_load(problem, load))
       continue;
     const Eigen::Vector3d own = placed.frame * load.torque;
-    require(placed.span.planar && own.head<2>().norm() <= rounding * own.norm() &&
+    require(placed.span.planar && own.head<2>().norm() <= direction_rounding * own.norm() &&
                 clamps_with_frames(problem) < 2 && problem.obstacles.empty(),
             "Problem", "torque of a load", load.torque.norm(), couple_requirement);
     // The couple is added to the load without a couple that place_loads() has placed at s; couples

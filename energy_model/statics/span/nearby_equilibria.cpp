@@ -23,8 +23,6 @@ namespace {
 
 /// Number of equilibria whose pairs search_between() uses.
 constexpr std::size_t most_paired = 6;
-/// Number of equilibria next to which search_adjacent() searches.
-constexpr std::size_t most_searched_adjacent = 8;
 
 constexpr const char* between_found = "between two equilibria found, by Newton's method";
 constexpr const char* adjacent_to_found = "adjacent to an equilibrium found, by Newton's method";
@@ -199,7 +197,7 @@ void search_between(const SpanOptions& options, SpanWorkspace& workspace, Found&
 void search_adjacent(const SpanOptions& options, SpanWorkspace& workspace, Found& found) {
   constexpr std::array<double, 6> steps = {0.5, -0.5, 1, -1, 2, -2};
   std::size_t i = 0;
-  for (; i < found.size() && i < most_searched_adjacent && !options.deadline.passed(); ++i) {
+  for (; i < found.size() && i < most_searched_from && !options.deadline.passed(); ++i) {
     if (!is_result(found[i], options)) continue;
     const SpanSolution from = found[i];
     const std::optional<Eigen::VectorXd> mode = mode_nearest_zero(from);

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <cstddef>
 #include <optional>
 
 #include "span/found.hpp"
@@ -8,6 +9,10 @@
 #include "strain/span_solution.hpp"
 
 namespace dlo::energy_model {
+
+/// Number of equilibria, in the order of discovery, from which a search goes on: by a descent if
+/// the equilibrium is unstable, and by search_adjacent().
+inline constexpr std::size_t most_searched_from = 8;
 
 /// Length of the displacement along a unit mode with which a descent leaves an unstable
 /// equilibrium.

@@ -64,9 +64,6 @@ constexpr std::size_t followed_starts = 2;
 /// material directors, and that of a rod that may pass a soft obstacle on either side.
 constexpr std::size_t more_followed_starts = 6;
 
-/// Number of equilibria, in the order of discovery, of which the unstable ones start a descent.
-constexpr std::size_t most_saddles = 8;
-
 constexpr const char* saddle_descent_strategy = "unstable equilibria, followed downhill";
 constexpr const char* out_of_plane = "the same starts and others, out of the plane";
 
@@ -191,9 +188,9 @@ class Search {
     for (std::size_t i = saddles_left_; i < found_.size(); ++i) {
       saddles += found_[i].status == SolveStatus::saddle ? 1 : 0;
     }
-    if (saddles_left_ < most_saddles || saddles == 0) return;
+    if (saddles_left_ < most_searched_from || saddles == 0) return;
     options_.log->add_omitted(std::to_string(saddles) + " unstable equilibria, beyond the first " +
-                              std::to_string(most_saddles) +
+                              std::to_string(most_searched_from) +
                               " found, which were not followed downhill");
   }
 
@@ -316,7 +313,8 @@ class Search {
 
   /// Descends from the unstable equilibria, including those that such a descent finds.
   void leave_saddles() {
-    for (; saddles_left_ < found_.size() && saddles_left_ < most_saddles && !on_.out_of_time();
+    for (;
+         saddles_left_ < found_.size() && saddles_left_ < most_searched_from && !on_.out_of_time();
          ++saddles_left_) {
       if (!options_.wants_all() && found_.has_stable_lowest()) return;
       if (found_[saddles_left_].status != SolveStatus::saddle) continue;
