@@ -118,9 +118,7 @@ void require_dead_loads(const Problem& problem, const char* function) {
 void check(const Problem& problem) {
   require_positive("Problem", "length", problem.length);
   require_positive("Problem", "bending_stiffness", problem.bending_stiffness);
-  if (problem.axial_stiffness) {
-    require_positive("Problem", "axial_stiffness", *problem.axial_stiffness);
-  }
+  require_positive("Problem", "axial_stiffness", problem.axial_stiffness.value_or(1));
   require_finite("Problem", "weight_per_length", problem.weight_per_length);
   require(!problem.grips.empty(), "Problem", "number of grips", 0, ">= 1");
   for (const Grip& grip : problem.grips) {

@@ -1,6 +1,7 @@
 #include "certify/piece_cuts.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstddef>
 #include <limits>
@@ -223,8 +224,8 @@ bool meets_core(const obstacle::Body& body, const SpanShape& shape, Bracket brac
     bracket = {bracket.obstacle, s[at == 0 ? 0 : at - 1],
                s[std::min<std::size_t>(at + 1, bracket_parts)]};
   }
-  const std::vector<double> s = {(bracket.begin + bracket.end) / 2};
-  return body.clearances(shape.sample(s).points)[0] + body.radius() < 2 * rounding * length;
+  const Samples middle = shape.sample(std::array{(bracket.begin + bracket.end) / 2});
+  return body.clearances(middle.points)[0] + body.radius() < 2 * rounding * length;
 }
 
 }  // namespace
@@ -290,8 +291,7 @@ std::vector<RidgeCrossing> ridge_crossings(const SpanSolution& solution) {
     const double s = (bracket.begin + bracket.end) / 2;
     const double offset = closest_contact_ends * span.length;
     if (!(s > offset && s < span.length - offset) || has_thin_core(obstacle.body)) continue;
-    const std::vector<double> at = {s - offset, s + offset};
-    const Samples samples = shape.sample(at);
+    const Samples samples = shape.sample(std::array{s - offset, s + offset});
     const obstacle::Gap before = obstacle.body.gap(samples.points.col(0));
     const obstacle::Gap after = obstacle.body.gap(samples.points.col(1));
     const Eigen::Vector3d jump = after.gradient - before.gradient;

@@ -2,6 +2,7 @@
 
 #include <Eigen/Geometry>
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 #include <memory>
@@ -23,8 +24,7 @@ struct MaterialFrame {
 };
 
 MaterialFrame material_at(const PlacedShape& shape, double length, double arc_length) {
-  const std::vector<double> at = {arc_length};
-  const Samples samples = sample({shape}, length, at);
+  const Samples samples = sample({shape}, length, std::array{arc_length});
   return {samples.tangents.col(0), samples.d1.col(0)};
 }
 
@@ -97,8 +97,7 @@ std::vector<GripContactForce> grip_contact_forces(const SpanSolution& solution,
     const Span::Contact& contact = solution.model->span().contacts[i];
     const auto add = [&](double s, double size) {
       if (size == 0) return;
-      const std::vector<double> at = {s};
-      const Eigen::Vector3d r = shape.sample(at).points.col(0);
+      const Eigen::Vector3d r = shape.sample(std::array{s}).points.col(0);
       const Eigen::Vector3d force = size * contact.obstacle.body.gap(r).gradient;
       held.push_back({i, s, force, r.cross(force)});
     };
@@ -136,8 +135,8 @@ std::vector<ContactPart> contacts_of(const PlacedSpan& place, const SpanSolution
     part.end_force = forces[i].end;
     part.largest_pressure = forces[i].largest_pressure;
     if (contact.lies()) {
-      const std::vector<double> first = {place.reversed ? contact.end : contact.begin};
-      const Eigen::Vector3d arm = shape.sample(first).points.col(0);
+      const double first = place.reversed ? contact.end : contact.begin;
+      const Eigen::Vector3d arm = shape.sample(std::array{first}).points.col(0);
       Eigen::Vector3d moment = forces[i].moment - arm.cross(forces[i].force);
       for (const GripContactForce& end : held) {
         if (end.contact == i) moment -= end.moment;
