@@ -5,7 +5,6 @@
 #include <cmath>
 
 #include "base/spin.hpp"
-#include "problem/rod_law.hpp"
 
 namespace dlo::energy_model {
 
@@ -28,7 +27,7 @@ std::optional<Plane> find_plane(const Eigen::Vector3d& origin, const Eigen::Vect
   plane.y = furthest.normalized();
   // A second projection makes x and y orthogonal to rounding even for a nearly parallel force.
   plane.y = part_across(plane.y, plane.x).normalized();
-  const Eigen::Vector3d normal = plane.x.cross(plane.y);
+  const Eigen::Vector3d normal = plane.normal();
   for (const Eigen::Vector3d& force : forces) {
     if (std::abs(normal.dot(force)) > planar_tolerance * largest) return std::nullopt;
   }

@@ -188,7 +188,7 @@ std::optional<Eigen::Vector3d> natural_normal(const Problem& problem) {
   };
   const std::optional<Plane> plane = find_plane(Eigen::Vector3d::Zero(), first, directions);
   if (!plane) return std::nullopt;
-  Eigen::Vector3d normal = plane->x.cross(plane->y);
+  Eigen::Vector3d normal = plane->normal();
   for (const Eigen::Index axis : {2, 1, 0}) {
     if (std::abs(normal[axis]) <= direction_rounding) continue;
     if (normal[axis] < 0) normal = -normal;

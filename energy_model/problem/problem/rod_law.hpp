@@ -15,9 +15,6 @@
 
 namespace dlo::energy_model {
 
-/// Component across a plane, divided by the largest size, up to which vectors lie in the plane.
-inline constexpr double planar_tolerance = 1e-12;
-
 /// Difference of arc lengths, divided by the rod length, below which they are treated as equal.
 inline constexpr double same_arc_length_share = 1e-9;
 

@@ -50,8 +50,7 @@ void choose_frame(PlacedSpan& placed, const Directions& directions) {
   const std::optional<Plane> plane = find_plane(Eigen::Vector3d::Zero(), first, others);
   placed.span.planar = plane.has_value();
   if (plane) {
-    placed.frame << plane->x.transpose(), plane->y.transpose(),
-        plane->x.cross(plane->y).transpose();
+    placed.frame << plane->x.transpose(), plane->y.transpose(), plane->normal().transpose();
   } else {
     // Any frame is valid; a rod without clamps starts nearly along this x.
     const Eigen::Vector3d across = first.unitOrthogonal();

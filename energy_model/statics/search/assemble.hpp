@@ -15,7 +15,8 @@ namespace dlo::energy_model {
 struct PlacedShape {
   SpanShape shape;
   bool reversed;
-  double start, end;         ///< arc lengths of s = 0 and of the last point in the rod's order [m]
+  double start;              ///< arc length of s = 0 [m]
+  double end;                ///< arc length of the last point in the rod's order [m]
   Eigen::Matrix3d to_space;  ///< rotation from the span's frame
   Eigen::Vector3d anchor;    ///< [m]
   /// Function of s: angle about the span's tangent from SpanShape's d1 to the material's d1 [rad];
