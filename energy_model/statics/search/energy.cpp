@@ -165,9 +165,14 @@ class EnergySolver::State {
   Equilibrium near(const Problem& problem, const Equilibrium& shape) {
     const Equilibrium* const given = std::exchange(options_.start, &shape);
     remembered_ = {};
-    Equilibrium result = std::move(solve(problem, Mode::descend).front());
-    options_.start = given;
-    return result;
+    try {
+      Equilibrium result = std::move(solve(problem, Mode::descend).front());
+      options_.start = given;
+      return result;
+    } catch (...) {
+      options_.start = given;
+      throw;
+    }
   }
 
   /// Log of the last solve().
