@@ -111,9 +111,7 @@ int expected_order(const Scene& scene, ChainClamp clamp) {
 /// points, if clamps hold the middles of its segments and the rod touches nothing.
 bool is_within_bound(const Scene& scene, const CandidateChain& chain,
                      const energy_model::Equilibrium& rod, double distance_m) {
-  const bool touches = std::ranges::any_of(
-      rod.obstacles, [](const Eigen::Vector3d& force) { return force.norm() > 0; });
-  if (touches || chain.clamp != ChainClamp::middle) return false;
+  if (touches_obstacle(rod) || chain.clamp != ChainClamp::middle) return false;
   Scene held_in_middle = scene;
   held_in_middle.force_model = {};
   const std::vector<double>& s = chain.rest.arc_length;

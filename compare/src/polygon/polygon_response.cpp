@@ -47,6 +47,11 @@ std::optional<Discretisation> hooke_polygon(const Scene& scene, int points) {
   }
 }
 
+bool touches_obstacle(const energy_model::Equilibrium& rod) {
+  return std::ranges::any_of(rod.obstacles,
+                             [](const Eigen::Vector3d& force) { return force.norm() > 0; });
+}
+
 std::string why_no_polygon(const Scene& scene) {
   const auto holds_frame = [](const Gripper& gripper) { return gripper.frame.has_value(); };
   const auto frames = std::ranges::count_if(scene.grippers, holds_frame);
@@ -61,7 +66,12 @@ std::string why_no_polygon(const Scene& scene) {
 PolygonResponse::PolygonResponse(const Scene& scene, const Discretisation& discretisation,
                                  const energy_model::Equilibrium& rod)
     : scene_(scene), polygon_(discretisation), n_(discretisation.rod.rest_lengths.size()) {
-  find_held_segments();
+  held_.assign(static_cast<std::size_t>(n_), false);
+  for (const force_model::Grip& grip : polygon_.rod.grips) {
+    grips_.push_back(&grip);
+    if (grip.targets.cols() == 2) held_[static_cast<std::size_t>(grip.first_point)] = true;
+  }
+  std::ranges::sort(grips_, {}, &force_model::Grip::first_point);
   const std::vector<double>& s = polygon_.arc_length;
   std::vector<double> points;
   std::vector<double> middles;
@@ -79,37 +89,24 @@ PolygonResponse::PolygonResponse(const Scene& scene, const Discretisation& discr
   find_forces(rod);
 }
 
-void PolygonResponse::find_held_segments() {
-  const std::vector<force_model::Grip>& grips = polygon_.rod.grips;
-  held_.assign(static_cast<std::size_t>(n_), false);
-  for (std::size_t k = 0; k < grips.size(); ++k) {
-    along_.push_back(k);
-    if (grips[k].targets.cols() == 2) held_[static_cast<std::size_t>(grips[k].first_point)] = true;
-  }
-  std::sort(along_.begin(), along_.end(), [&](std::size_t a, std::size_t b) {
-    return grips[a].first_point < grips[b].first_point;
-  });
-}
-
 /// Computes the forces n_i from the loads on the polygon: from the free ends inwards, and between
 /// grips from the force that remains after the grips' reactions. An error of a reaction would only
 /// change the multipliers of the constraints.
 void PolygonResponse::find_forces(const energy_model::Equilibrium& rod) {
   forces_.setZero(3, n_);
   const Eigen::Matrix3Xd& loads = polygon_.rod.loads;
-  const std::vector<force_model::Grip>& grips = polygon_.rod.grips;
-  const Eigen::Index first = grips[along_.front()].first_point;
-  const auto last_point = [](const force_model::Grip& grip) {
-    return grip.first_point + grip.targets.cols() - 1;
+  const Eigen::Index first = grips_.front()->first_point;
+  const auto last_point = [](const force_model::Grip* grip) {
+    return grip->first_point + grip->targets.cols() - 1;
   };
   Eigen::Vector3d force = Eigen::Vector3d::Zero();
   for (Eigen::Index i = 0; i < first; ++i) forces_.col(i) = force -= loads.col(i);
   force.setZero();
-  for (Eigen::Index i = n_; i > last_point(grips[along_.back()]); --i) {
+  for (Eigen::Index i = n_; i > last_point(grips_.back()); --i) {
     forces_.col(i - 1) = force += loads.col(i);
   }
-  for (std::size_t k = 0; k + 1 < along_.size(); ++k) {
-    const Eigen::Index begin = last_point(grips[along_[k]]);
+  for (std::size_t k = 0; k + 1 < grips_.size(); ++k) {
+    const Eigen::Index begin = last_point(grips_[k]);
     const double s = (polygon_.arc_length[static_cast<std::size_t>(begin)] +
                       polygon_.arc_length[static_cast<std::size_t>(begin) + 1]) /
                      2;
@@ -117,8 +114,10 @@ void PolygonResponse::find_forces(const energy_model::Equilibrium& rod) {
     for (const PointLoad& load : scene_.loads) {
       if (load.at <= s) force -= load.force;
     }
-    for (std::size_t j = 0; j <= k; ++j) force -= rod.grips[along_[j]].force;
-    for (Eigen::Index i = begin; i < grips[along_[k + 1]].first_point; ++i) {
+    for (std::size_t j = 0; j <= k; ++j) {
+      force -= rod.grips[static_cast<std::size_t>(grips_[j] - polygon_.rod.grips.data())].force;
+    }
+    for (Eigen::Index i = begin; i < grips_[k + 1]->first_point; ++i) {
       if (i > begin) force -= loads.col(i);
       forces_.col(i) = force;
     }
@@ -126,12 +125,11 @@ void PolygonResponse::find_forces(const energy_model::Equilibrium& rod) {
 }
 
 Eigen::Index PolygonResponse::constraints() const {
-  return 3 * (static_cast<Eigen::Index>(along_.size()) - 1);
+  return 3 * (static_cast<Eigen::Index>(grips_.size()) - 1);
 }
 
 Eigen::SparseMatrix<double> PolygonResponse::matrix(double joints) const {
   const Eigen::VectorXd& L = polygon_.rod.rest_lengths;
-  const std::vector<force_model::Grip>& grips = polygon_.rod.grips;
   const Eigen::Index size = 2 * n_ + constraints();
   std::vector<Eigen::Triplet<double>> entries;
   const auto add = [&](Eigen::Index row, Eigen::Index column, const Eigen::MatrixXd& block) {
@@ -164,9 +162,9 @@ Eigen::SparseMatrix<double> PolygonResponse::matrix(double joints) const {
     }
     add(2 * i, 2 * i, diagonal * Eigen::Matrix2d::Identity());
   }
-  for (std::size_t k = 0; k + 1 < along_.size(); ++k) {
+  for (std::size_t k = 0; k + 1 < grips_.size(); ++k) {
     const Eigen::Index row = 2 * n_ + 3 * static_cast<Eigen::Index>(k);
-    for (Eigen::Index i = grips[along_[k]].first_point; i < grips[along_[k + 1]].first_point; ++i) {
+    for (Eigen::Index i = grips_[k]->first_point; i < grips_[k + 1]->first_point; ++i) {
       if (is_held(i)) continue;
       // Scaled by EI, so that all entries have the same magnitude.
       const Eigen::MatrixXd block = L[i] * scene_.bending_stiffness() * across(i);
@@ -190,12 +188,13 @@ bool PolygonResponse::is_positive(const Eigen::SparseMatrix<double>& matrix) con
          (pivots.array() == 0).count() == 0;
 }
 
-PolygonResponse::Turns PolygonResponse::turns(const Eigen::Matrix3Xd& f,
-                                              const Eigen::Matrix3Xd& gaps) const {
+std::optional<PolygonResponse::Response> PolygonResponse::turns(
+    const Eigen::Matrix3Xd& f, const Eigen::Matrix3Xd& gaps) const {
   constexpr double reduced_stiffness_factor = 0.95;
-  Turns result;
   const Eigen::SparseMatrix<double> bordered = matrix(1);
-  if (!is_positive(bordered) || !is_positive(matrix(reduced_stiffness_factor))) return result;
+  if (!is_positive(bordered) || !is_positive(matrix(reduced_stiffness_factor))) {
+    return std::nullopt;
+  }
   Eigen::VectorXd right = Eigen::VectorXd::Zero(bordered.rows());
   for (Eigen::Index i = 0; i < n_; ++i) {
     if (held_[static_cast<std::size_t>(i)]) continue;
@@ -205,27 +204,41 @@ PolygonResponse::Turns PolygonResponse::turns(const Eigen::Matrix3Xd& f,
     right.segment<3>(2 * n_ + 3 * k) = scene_.bending_stiffness() * gaps.col(k);
   }
   const Eigen::SparseLU<Eigen::SparseMatrix<double>> factors(bordered);
-  if (factors.info() != Eigen::Success) return result;
+  if (factors.info() != Eigen::Success) return std::nullopt;
   const Eigen::VectorXd solution = factors.solve(right);
-  if (!solution.allFinite()) return result;
+  if (!solution.allFinite()) return std::nullopt;
   // A nearly singular matrix gives a solution that does not satisfy its equations.
-  if ((bordered * solution - right).norm() > 1e-6 * right.norm()) return result;
-  result.possible = true;
+  if ((bordered * solution - right).norm() > 1e-6 * right.norm()) return std::nullopt;
+  Response result;
   result.dt.resize(3, n_);
   for (Eigen::Index i = 0; i < n_; ++i) {
     result.dt.col(i) = across_[static_cast<std::size_t>(i)] * solution.segment<2>(2 * i);
   }
   // H dt - f = L dn across the tangents; the multipliers are -dn / EI.
-  result.dn.resize(3, gaps.cols());
-  for (Eigen::Index k = 0; k < gaps.cols(); ++k) {
-    result.dn.col(k) = -scene_.bending_stiffness() * solution.segment<3>(2 * n_ + 3 * k);
+  // Beyond the grips only the loads act, which do not change.
+  result.dn.setZero(3, n_);
+  for (std::size_t k = 0; k + 1 < grips_.size(); ++k) {
+    const Eigen::Index begin = grips_[k]->first_point;
+    result.dn.middleCols(begin, grips_[k + 1]->first_point - begin).colwise() =
+        Eigen::Vector3d(-scene_.bending_stiffness() *
+                        solution.segment<3>(2 * n_ + 3 * static_cast<Eigen::Index>(k)));
   }
   return result;
 }
 
+Eigen::Matrix3Xd PolygonResponse::sums_between_grips(const Eigen::Matrix3Xd& steps) const {
+  Eigen::Matrix3Xd sums(3, constraints() / 3);
+  for (std::size_t k = 0; k + 1 < grips_.size(); ++k) {
+    const Eigen::Index begin = grips_[k]->first_point;
+    sums.col(static_cast<Eigen::Index>(k)) =
+        steps.middleCols(begin, grips_[k + 1]->first_point - begin).rowwise().sum();
+  }
+  return sums;
+}
+
 Eigen::Matrix3Xd PolygonResponse::points_along(const Eigen::Vector3d& start,
                                                const Eigen::Matrix3Xd& steps) const {
-  const Eigen::Index first = polygon_.rod.grips[along_.front()].first_point;
+  const Eigen::Index first = grips_.front()->first_point;
   Eigen::Matrix3Xd points(3, n_ + 1);
   points.col(first) = start;
   for (Eigen::Index i = first; i < n_; ++i) points.col(i + 1) = points.col(i) + steps.col(i);
@@ -242,28 +255,15 @@ double PolygonResponse::displacement_rms(const Eigen::Matrix3Xd& movement) const
 PolygonResponse::Response PolygonResponse::response_to(const Eigen::Matrix3Xd& f,
                                                        const Eigen::Matrix3Xd& eta) const {
   const Eigen::RowVectorXd L = polygon_.rod.rest_lengths.transpose();
-  const std::vector<force_model::Grip>& grips = polygon_.rod.grips;
   Eigen::Matrix3Xd steps = eta * L.asDiagonal();
   for (Eigen::Index i = 0; i < n_; ++i) {
     if (held_[static_cast<std::size_t>(i)]) steps.col(i).setZero();
   }
-  Eigen::Matrix3Xd gaps(3, static_cast<Eigen::Index>(along_.size()) - 1);
-  for (Eigen::Index k = 0; k < gaps.cols(); ++k) {
-    const Eigen::Index begin = grips[along_[static_cast<std::size_t>(k)]].first_point;
-    const Eigen::Index end = grips[along_[static_cast<std::size_t>(k) + 1]].first_point;
-    gaps.col(k) = -steps.middleCols(begin, end - begin).rowwise().sum();
-  }
-  const Turns turned = turns(f, gaps);
-  if (!turned.possible) return {std::numeric_limits<double>::infinity(), {}, {}};
-  steps += turned.dt * L.asDiagonal();
-  // Beyond the grips only the loads act, which do not change.
-  Eigen::Matrix3Xd dn = Eigen::Matrix3Xd::Zero(3, n_);
-  for (Eigen::Index k = 0; k < gaps.cols(); ++k) {
-    const Eigen::Index begin = grips[along_[static_cast<std::size_t>(k)]].first_point;
-    const Eigen::Index end = grips[along_[static_cast<std::size_t>(k) + 1]].first_point;
-    dn.middleCols(begin, end - begin).colwise() = Eigen::Vector3d(turned.dn.col(k));
-  }
-  return {displacement_rms(points_along(Eigen::Vector3d::Zero(), steps)), turned.dt, std::move(dn)};
+  std::optional<Response> response = turns(f, -sums_between_grips(steps));
+  if (!response) return {};
+  steps += response->dt * L.asDiagonal();
+  response->displacement_m = displacement_rms(points_along(Eigen::Vector3d::Zero(), steps));
+  return *std::move(response);
 }
 
 StretchResponse PolygonResponse::stretch(double stiffness) const {
@@ -302,7 +302,6 @@ double PolygonResponse::shear(double stiffness) const {
 
 double PolygonResponse::discretisation() const {
   const Eigen::VectorXd& L = polygon_.rod.rest_lengths;
-  const std::vector<force_model::Grip>& grips = polygon_.rod.grips;
   Eigen::Matrix3Xd f = forces_ * L.asDiagonal();
   for (Eigen::Index i = 0; i + 1 < n_; ++i) {
     const Eigen::Vector3d u = tangents_.col(i);
@@ -313,18 +312,15 @@ double PolygonResponse::discretisation() const {
     f.col(i + 1) += slope * u;
   }
   Eigen::Matrix3Xd steps = tangents_ * L.asDiagonal();
-  Eigen::Matrix3Xd gaps(3, static_cast<Eigen::Index>(along_.size()) - 1);
-  for (Eigen::Index k = 0; k < gaps.cols(); ++k) {
-    const force_model::Grip& begin = grips[along_[static_cast<std::size_t>(k)]];
-    const force_model::Grip& end = grips[along_[static_cast<std::size_t>(k) + 1]];
-    gaps.col(k) =
-        end.targets.col(0) - begin.targets.col(0) -
-        steps.middleCols(begin.first_point, end.first_point - begin.first_point).rowwise().sum();
+  Eigen::Matrix3Xd gaps = -sums_between_grips(steps);
+  for (std::size_t k = 0; k + 1 < grips_.size(); ++k) {
+    gaps.col(static_cast<Eigen::Index>(k)) +=
+        grips_[k + 1]->targets.col(0) - grips_[k]->targets.col(0);
   }
-  const Turns turned = turns(f, gaps);
-  if (!turned.possible) return std::numeric_limits<double>::infinity();
-  steps += turned.dt * L.asDiagonal();
-  const Eigen::Vector3d start = grips[along_.front()].targets.col(0);
+  const std::optional<Response> turned = turns(f, gaps);
+  if (!turned) return std::numeric_limits<double>::infinity();
+  steps += turned->dt * L.asDiagonal();
+  const Eigen::Vector3d start = grips_.front()->targets.col(0);
   return displacement_rms(points_along(start, steps) - rod_points_);
 }
 

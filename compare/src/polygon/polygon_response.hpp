@@ -2,6 +2,7 @@
 
 #include <Eigen/Core>
 #include <Eigen/SparseCore>
+#include <limits>
 #include <optional>
 #include <string>
 
@@ -17,6 +18,9 @@ inline constexpr int rod_points = 97;
 /// Returns the polygon of N points with the law hooke, the scene's bookkeeping and a physical c_c;
 /// std::nullopt if discretise() rejects the scene, such as grips that need more points.
 [[nodiscard]] std::optional<Discretisation> hooke_polygon(const Scene& scene, int points);
+
+/// Whether an obstacle pushes an equilibrium.
+[[nodiscard]] bool touches_obstacle(const energy_model::Equilibrium& rod);
 
 /// Returns why PolygonResponse does not apply to a rod without contact; empty if it does.
 [[nodiscard]] std::string why_no_polygon(const Scene& scene);
@@ -64,14 +68,15 @@ class PolygonResponse {
   [[nodiscard]] double discretisation() const;
 
  private:
-  struct Turns {
-    bool possible = false;
-    Eigen::Matrix3Xd dt;  // 3 x n
-    Eigen::Matrix3Xd dn;  // change of the force between neighbouring grips, 3 x (grips - 1) [N]
+  struct Response {
+    double displacement_m = std::numeric_limits<double>::infinity();  // infinite: no response
+    Eigen::Matrix3Xd dt;  // change of each segment's tangent, 3 x n
+    Eigen::Matrix3Xd dn;  // change of the force in each segment, 3 x n [N]
   };
-  void find_held_segments();
   void find_forces(const energy_model::Equilibrium& rod);
-  [[nodiscard]] Turns turns(const Eigen::Matrix3Xd& f, const Eigen::Matrix3Xd& gaps) const;
+  /// Returns the rotations without the displacement; std::nullopt if the rod cannot respond.
+  [[nodiscard]] std::optional<Response> turns(const Eigen::Matrix3Xd& f,
+                                              const Eigen::Matrix3Xd& gaps) const;
   /// Returns the second derivatives with the derivatives of the constraints as border.
   /// @param joints  factor on the stiffness of the joints
   [[nodiscard]] Eigen::SparseMatrix<double> matrix(double joints) const;
@@ -79,24 +84,21 @@ class PolygonResponse {
   /// Whether `matrix` is positive definite on the null space of the constraints, by Sylvester's law
   /// of inertia.
   [[nodiscard]] bool is_positive(const Eigen::SparseMatrix<double>& matrix) const;
-  struct Response {
-    double displacement_m;  // infinite: no response
-    Eigen::Matrix3Xd dt;    // change of each segment's tangent
-    Eigen::Matrix3Xd dn;    // change of the force in each segment [N]
-  };
   [[nodiscard]] Response response_to(const Eigen::Matrix3Xd& f, const Eigen::Matrix3Xd& eta) const;
+  /// Returns the sum of the segments' steps between each two neighbouring grips, 3 x (grips - 1).
+  [[nodiscard]] Eigen::Matrix3Xd sums_between_grips(const Eigen::Matrix3Xd& steps) const;
   [[nodiscard]] Eigen::Matrix3Xd points_along(const Eigen::Vector3d& start,
                                               const Eigen::Matrix3Xd& steps) const;
   [[nodiscard]] double displacement_rms(const Eigen::Matrix3Xd& movement) const;
 
   const Scene& scene_;
   const Discretisation& polygon_;
-  Eigen::Index n_;                  // number of segments
-  std::vector<std::size_t> along_;  // indices of the grips in the order of their points
-  std::vector<bool> held_;          // whether a segment is held
-  Eigen::Matrix3Xd tangents_;       // t_i
-  Eigen::Matrix3Xd forces_;         // n_i [N]
-  Eigen::Matrix3Xd rod_points_;     // points of the rod at the points' arc lengths [m]
+  Eigen::Index n_;                               // number of segments
+  std::vector<const force_model::Grip*> grips_;  // in the order of their points
+  std::vector<bool> held_;                       // whether a segment is held
+  Eigen::Matrix3Xd tangents_;                    // t_i
+  Eigen::Matrix3Xd forces_;                      // n_i [N]
+  Eigen::Matrix3Xd rod_points_;                  // points of the rod at the points' arc lengths [m]
   std::vector<Eigen::Matrix<double, 3, 2>> across_;
 };
 

@@ -84,11 +84,6 @@ std::optional<energy_model::Equilibrium> rod_shape(const Scene& scene, double ti
   return std::nullopt;
 }
 
-bool touches(const energy_model::Equilibrium& rod) {
-  return std::any_of(rod.obstacles.begin(), rod.obstacles.end(),
-                     [](const Eigen::Vector3d& force) { return force.norm() > 0; });
-}
-
 double bound_at(const Scene& scene, const energy_model::Equilibrium& rod, int points) {
   const std::optional<Discretisation> polygon = hooke_polygon(scene, points);
   return polygon ? polygon_bound(scene, *polygon, rod) : unbounded;
@@ -259,7 +254,7 @@ void bound_by_shape(const Scene& scene, const PlanOptions& options,
   const TimeLimit time(options.time_limit);
   std::string why;
   const std::optional<energy_model::Equilibrium> rod = rod_shape(scene, options.time_limit, why);
-  plan.contact = !rod || touches(*rod);
+  plan.contact = !rod || touches_obstacle(*rod);
   if (rod && !plan.twist.empty()) {
     set_planned_twist(*rod, plan);
     set_neglect_effect(scene.without_twist(), *rod, time.left(), items.twist);

@@ -39,11 +39,6 @@ double smallest_slack(const Scene& scene) {
   return least;
 }
 
-bool touches_any(const energy_model::Equilibrium& rod) {
-  return std::any_of(rod.obstacles.begin(), rod.obstacles.end(),
-                     [](const Eigen::Vector3d& force) { return force.norm() > 0; });
-}
-
 double largest_magnitude(const std::vector<double>& values) {
   double largest = 0;
   for (const double value : values) largest = std::max(largest, std::abs(value));
@@ -121,7 +116,7 @@ StretchEffect stretch_effect(const Scene& scene, Model model, const energy_model
   if (solution.tension.empty()) return effect;
   effect.strain = largest_magnitude(solution.tension) / *EA;
   if (!(effect.strain * (1 + 1 / slack) > options.target)) return effect;
-  if (!touches_any(rod) && why_no_polygon(scene).empty()) {
+  if (!touches_obstacle(rod) && why_no_polygon(scene).empty()) {
     if (const std::optional<Discretisation> fine = hooke_polygon(scene, rod_points)) {
       const StretchResponse response = PolygonResponse(scene, *fine, rod).stretch(*EA);
       if (std::isfinite(response.displacement_m)) {
