@@ -248,11 +248,7 @@ SceneEnergies energies_of(const SolvedInstant& moment) {
   const Scene& now = moment.scene;
   const Equilibrium& rod = moment.rod;
   const Eigen::Vector3d zero = now.grippers.front().position;
-  SceneEnergies energy{.bending = rod.energy.bending,
-                       .twisting = rod.energy.twisting,
-                       .gravity = rod.energy.gravity,
-                       .load = rod.energy.load,
-                       .contact = rod.energy.contact};
+  SceneEnergies energy = rod.energy;
   energy.gravity -= now.weight_between(0, now.length).dot(zero);
   for (const PointLoad& load : now.loads) energy.load -= load.force.dot(zero);
   energy.load -= now.distributed_between(0, now.length).dot(zero);

@@ -68,9 +68,9 @@ std::vector<double> all_on_rod(std::vector<double> arc_lengths, double length) {
 
 /// Returns solution_of() with the effect of stretch.
 Solution solution_with_stretch_effect(const StretchedRod& of, Model model,
-                                      const std::vector<double>& arc_lengths,
-                                      const std::vector<std::size_t>& obstacles) {
-  Solution solution = solution_of(of.scene, model, of.rod, arc_lengths, obstacles);
+                                      const std::vector<double>& arc_lengths) {
+  Solution solution =
+      solution_of(of.scene, model, of.rod, arc_lengths, obstacles_in_reach(of.scene));
   solution.stretch = of.effect;
   solution.stretch_decision = of.decision;
   if (of.neglects_stretch) solution.neglected.emplace_back("stretch");
@@ -95,15 +95,8 @@ Solution solution_of(const Scene& scene, Model model, const energy_model::Equili
   const energy_model::Samples shape = equilibrium.sample(samples);
   solution.shape = {samples, shape.points};
   solution.d1 = shape.d1;
-  solution.energy = {.bending = equilibrium.energy.bending,
-                     .twisting = equilibrium.energy.twisting,
-                     .gravity = equilibrium.energy.gravity,
-                     .load = equilibrium.energy.load,
-                     .stretch = equilibrium.energy.stretch,
-                     .contact = equilibrium.energy.contact};
-  for (const energy_model::Reaction& reaction : equilibrium.grips) {
-    solution.grippers.push_back({reaction.force, reaction.torque});
-  }
+  solution.energy = equilibrium.energy;
+  solution.grippers = equilibrium.grips;
   solution.obstacles = expand_obstacle_forces(scene, obstacles, equilibrium.obstacles);
   solution.twists = equilibrium.twists;
   solution.linking = linking_of(scene, equilibrium);
@@ -136,8 +129,7 @@ Solution solution_of(const Scene& scene, Model model, const energy_model::Equili
 Solution solve(const Scene& scene, Model model, const SolveOptions& options,
                const std::vector<double>& arc_lengths) {
   if (model == Model::energy || model == Model::exact) {
-    return solution_with_stretch_effect(decide_stretch(scene, model, options), model, arc_lengths,
-                                        obstacles_in_reach(scene));
+    return solution_with_stretch_effect(decide_stretch(scene, model, options), model, arc_lengths);
   }
   Solution solution = model == Model::chain ? solve_chain(scene, scene.force_model, options)
                                             : solve_force(scene, scene.force_model, options);
@@ -165,7 +157,7 @@ Solution solve_near(const Scene& scene, const MeasuredShape& shape, const SolveO
                     scene.file, shape.file, near.message, near.evaluations));
   }
   return solution_with_stretch_effect(with_stretch_effect(scene, Model::energy, near, options),
-                                      Model::energy, arc_lengths, obstacles_in_reach(scene));
+                                      Model::energy, arc_lengths);
 }
 
 AllSolutions solve_all(const Scene& scene, const SolveOptions& options,
@@ -174,11 +166,9 @@ AllSolutions solve_all(const Scene& scene, const SolveOptions& options,
   AllSolutions all;
   all.strategies = std::move(search.strategies);
   all.omitted = std::move(search.omitted);
-  const std::vector<std::size_t> obstacles = obstacles_in_reach(scene);
   for (const energy_model::Equilibrium& state : search.equilibria) {
-    all.solutions.push_back(
-        solution_with_stretch_effect(with_stretch_effect(scene, Model::energy, state, options),
-                                     Model::energy, arc_lengths, obstacles));
+    all.solutions.push_back(solution_with_stretch_effect(
+        with_stretch_effect(scene, Model::energy, state, options), Model::energy, arc_lengths));
   }
   return all;
 }

@@ -49,27 +49,12 @@ struct SolveOptions {
   double target = 1e-3;
 };
 
-/// Energies [J]; the potentials of gravity and loads are zero at the first gripper.
-struct SceneEnergies {
-  double bending = 0;  ///< bending energy of the joints or of the curvature
-  /// twisting energy if the scene holds twist and the model does not neglect it
-  double twisting = 0;
-  double gravity = 0;  ///< potential of the rod's weight
-  double load = 0;     ///< potential of point loads and distributed loads
-  double stretch = 0;  ///< energy of axial strain
-  double contact = 0;  ///< energy of compliant obstacles
-
-  /// Returns the sum of all energies [J].
-  [[nodiscard]] double total() const {
-    return bending + twisting + gravity + load + stretch + contact;
-  }
-};
+/// Energies [J]. The bending energy of a polygon is that of its joints. The twisting energy is zero
+/// if the model neglects twist.
+using SceneEnergies = energy_model::Energies;
 
 /// Force and torque of a gripper on the rod; the torque is about the gripper's position.
-struct GripperLoad {
-  Eigen::Vector3d force = Eigen::Vector3d::Zero();   ///< [N]
-  Eigen::Vector3d torque = Eigen::Vector3d::Zero();  ///< [N m]
-};
+using GripperLoad = energy_model::Reaction;
 
 /// Estimated effect of axial stretch on a shape of a model without stretch, to first order in N/EA.
 /// NaN: the effect or EA is unknown, or the strain is too small to matter.

@@ -162,12 +162,12 @@ struct Energies {
   double twisting = 0;  ///< int 1/2 GJ tau^2 ds, tau the twist per length beyond the natural one
   double gravity = 0;   ///< potential of the rod's weight
   double load = 0;      ///< potential of loads, at points and per length
-  double contact = 0;   ///< energy of yielding obstacles: int 1/2 k d^2 ds, d the depth
   double stretch = 0;   ///< int N^2 / (2 EA) ds, if axial_stiffness is given
+  double contact = 0;   ///< energy of yielding obstacles: int 1/2 k d^2 ds, d the depth
 
   /// Returns the sum of all energies [J].
   [[nodiscard]] double total() const {
-    return bending + twisting + gravity + load + contact + stretch;
+    return bending + twisting + gravity + load + stretch + contact;
   }
 };
 
