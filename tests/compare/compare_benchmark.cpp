@@ -33,8 +33,9 @@ void sweep(benchmark::State& state, SweepModel model, const std::string& rows) {
   std::int64_t bytes = 0;
   for (auto iteration : state) {
     (void)iteration;
-    swept.run({0, swept.grid().size()}, static_cast<int>(state.range(0)),
-              [&](const std::string& line) { bytes += static_cast<std::int64_t>(line.size()); });
+    swept.run({0, swept.grid().size()}, static_cast<int>(state.range(0)), [&](const auto& cells) {
+      bytes += static_cast<std::int64_t>(swept.line(cells).size());
+    });
   }
   state.SetItemsProcessed(state.iterations() * swept.grid().size());
   state.SetBytesProcessed(bytes);

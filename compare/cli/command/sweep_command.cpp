@@ -123,7 +123,8 @@ void write_rows(const SweepOptions& options, const compare::Sweep& sweep,
   std::int64_t done = 0;
   std::int64_t without_result = 0;
   std::vector<std::string> drawn;
-  sweep.run(rows, options.threads, [&](const std::string& line) {
+  sweep.run(rows, options.threads, [&](const std::vector<compare::SweepCell>& cells) {
+    const std::string line = sweep.line(cells);
     write(line);
     if (options.plot.draws()) drawn.push_back(line);
     if (!line.ends_with(",ok\n")) ++without_result;

@@ -102,7 +102,7 @@ py::dict sweep(const std::string& text, const std::string& file, const Materials
     }
     std::vector<Column> columns;
     for (const compare::SweepColumn& column : sweep.columns()) columns.push_back({column});
-    sweep.run_cells({0, sweep.grid().size()}, threads, [&](const auto& cells) {
+    sweep.run({0, sweep.grid().size()}, threads, [&](const auto& cells) {
       signals.throw_if_stopped();
       for (std::size_t i = 0; i < columns.size(); ++i) columns[i].add(cells.at(i));
     });

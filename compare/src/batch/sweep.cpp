@@ -60,30 +60,6 @@ struct CsvCell {
   std::string operator()(const std::string& text) const { return csv_field(text); }
 };
 
-/// Computes rows on several threads and passes them to `take` in order.
-template <typename Make, typename Take>
-void run_rows(RowRange rows, int threads, const Make& make, const Take& take) {
-  using Row = decltype(make(rows.first));
-  const int workers = threads > 0 ? threads : tbb::info::default_concurrency();
-  const tbb::global_control limit(tbb::global_control::max_allowed_parallelism,
-                                  static_cast<std::size_t>(workers));
-  tbb::task_arena arena(workers);
-  const std::size_t window = rows_per_thread * static_cast<std::size_t>(workers);
-  std::int64_t next = rows.first;
-  const auto next_row = [&](tbb::flow_control& control) {
-    const std::int64_t row = next;
-    if (row >= rows.last) control.stop();
-    next += rows.step;
-    return row;
-  };
-  execute(arena, [&] {
-    tbb::parallel_pipeline(
-        window, tbb::make_filter<void, std::int64_t>(tbb::filter_mode::serial_in_order, next_row) &
-                    tbb::make_filter<std::int64_t, Row>(tbb::filter_mode::parallel, make) &
-                    tbb::make_filter<Row, void>(tbb::filter_mode::serial_in_order, take));
-  });
-}
-
 Model solver_of(SweepModel model) {
   switch (model) {
     case SweepModel::chain:
@@ -252,30 +228,42 @@ std::vector<SweepCell> Sweep::cells(std::int64_t row) const {
   return cells;
 }
 
-std::string Sweep::row(std::int64_t row) const {
+std::string Sweep::line(const std::vector<SweepCell>& cells) const {
+  const auto row = std::get<std::int64_t>(cells.front());
   const std::vector<std::int64_t> indices = grid_.indices(row);
-  std::string line = fmt::format("{},", row);
+  std::string line = fmt::format("{}", row);
   for (std::size_t i = 0; i < indices.size(); ++i) {
-    line += csv_field(grid_.axes()[i].number(indices[i])) + ",";
+    line += "," + csv_field(grid_.axes()[i].number(indices[i]));
   }
-  const char* separator = "";
-  for (const SweepCell& cell : results(row)) {
-    line += separator + std::visit(CsvCell(), cell);
-    separator = ",";
+  for (std::size_t i = 1 + indices.size(); i < cells.size(); ++i) {
+    line += "," + std::visit(CsvCell(), cells[i]);
   }
   return line + "\n";
 }
 
 void Sweep::run(RowRange rows, int threads,
-                const std::function<void(const std::string& line)>& take) const {
-  run_rows(
-      rows, threads, [this](std::int64_t number) { return row(number); }, take);
-}
-
-void Sweep::run_cells(RowRange rows, int threads,
-                      const std::function<void(const std::vector<SweepCell>& cells)>& take) const {
-  run_rows(
-      rows, threads, [this](std::int64_t number) { return cells(number); }, take);
+                const std::function<void(const std::vector<SweepCell>& cells)>& take) const {
+  using Row = std::vector<SweepCell>;
+  const int workers = threads > 0 ? threads : tbb::info::default_concurrency();
+  const tbb::global_control limit(tbb::global_control::max_allowed_parallelism,
+                                  static_cast<std::size_t>(workers));
+  tbb::task_arena arena(workers);
+  const std::size_t window = rows_per_thread * static_cast<std::size_t>(workers);
+  std::int64_t next = rows.first;
+  const auto next_row = [&](tbb::flow_control& control) {
+    const std::int64_t row = next;
+    if (row >= rows.last) control.stop();
+    next += rows.step;
+    return row;
+  };
+  execute(arena, [&] {
+    tbb::parallel_pipeline(
+        window,
+        tbb::make_filter<void, std::int64_t>(tbb::filter_mode::serial_in_order, next_row) &
+            tbb::make_filter<std::int64_t, Row>(tbb::filter_mode::parallel,
+                                                [this](std::int64_t row) { return cells(row); }) &
+            tbb::make_filter<Row, void>(tbb::filter_mode::serial_in_order, take));
+  });
 }
 
 }  // namespace dlo::compare

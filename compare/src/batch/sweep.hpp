@@ -86,22 +86,18 @@ class Sweep {
   /// Returns the scene of a row. @throws InputError if the grid's values give no valid scene
   [[nodiscard]] Scene scene(std::int64_t row) const;
 
-  /// Computes one row as a CSV line. status is "ok", or the reason why there are no results: a
-  /// scene that is refused or does not converge gives a row like any other. Numbers of results have
-  /// 10 significant digits.
-  [[nodiscard]] std::string row(std::int64_t row) const;
-  /// Computes one row at full precision, one cell per column.
+  /// Computes one row at full precision, one cell per column. status is "ok", or the reason why
+  /// there are no results: a scene that is refused or does not converge gives a row like any other.
   [[nodiscard]] std::vector<SweepCell> cells(std::int64_t row) const;
+  /// Returns the cells of a row as a CSV line. Numbers of results have 10 significant digits.
+  [[nodiscard]] std::string line(const std::vector<SweepCell>& cells) const;
 
-  /// Computes rows on several threads and passes their CSV lines to `take` in order. At most a
-  /// fixed number of rows per thread is stored at any time.
+  /// Computes rows on several threads and passes their cells() to `take` in order. At most a fixed
+  /// number of rows per thread is stored at any time.
   /// @param threads  0: all cores; more threads than cores only cost memory
   /// @param take     called by one thread at a time; its exceptions end the run and are rethrown
   void run(RowRange rows, int threads,
-           const std::function<void(const std::string& line)>& take) const;
-  /// Computes rows as run() does, and passes their cells().
-  void run_cells(RowRange rows, int threads,
-                 const std::function<void(const std::vector<SweepCell>& cells)>& take) const;
+           const std::function<void(const std::vector<SweepCell>& cells)>& take) const;
 
  private:
   [[nodiscard]] std::vector<SweepColumn> result_columns() const;

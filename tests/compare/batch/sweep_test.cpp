@@ -165,14 +165,14 @@ TEST(Sweep, EveryModelFillsItsColumns) {
   for (const std::string& name : names<SweepModel>()) {
     const Sweep one = sweep({"gamma=2"}, from_name<SweepModel>(name));
     const std::string header = one.header();
-    const std::string row = one.row(0);
+    const std::vector<SweepCell> cells = one.cells(0);
+    const std::string row = one.line(cells);
     EXPECT_EQ(std::count(row.begin(), row.end(), ','),
               std::count(header.begin(), header.end(), ','))
         << name;
     EXPECT_TRUE(has_none(row, {",,"}));
     EXPECT_EQ(row.substr(row.size() - 4), ",ok\n") << row;
     const std::vector<SweepColumn> columns = one.columns();
-    const std::vector<SweepCell> cells = one.cells(0);
     ASSERT_EQ(cells.size(), columns.size()) << name;
     for (std::size_t i = 0; i < cells.size(); ++i) {
       const bool text = columns[i].kind == CellKind::text;
@@ -183,14 +183,14 @@ TEST(Sweep, EveryModelFillsItsColumns) {
 
 TEST(Sweep, ARefusedOrUnsolvedSceneIsARow) {
   const Sweep mixed = sweep({"rod.length=1,-1,\"x\""});
-  EXPECT_EQ(mixed.row(0).substr(0, 4), "0,1,");
-  const std::string bad = mixed.row(1);
+  EXPECT_EQ(mixed.line(mixed.cells(0)).substr(0, 4), "0,1,");
+  const std::string bad = mixed.line(mixed.cells(1));
   EXPECT_NE(bad.find("2,"), 0U);
   EXPECT_EQ(bad.substr(0, 12), "1,-1,,,,,,,,") << bad;
   EXPECT_TRUE(has_all(bad, {"rod.length = -1"}));
   const Sweep unsolved(SceneTemplate(sweep_scene, "swept.toml"), Grid({parse_axis("gamma=5")}),
                        SweepModel::energy, {.max_evaluations = 1});
-  EXPECT_TRUE(has_all(unsolved.row(0), {"did not converge"}));
+  EXPECT_TRUE(has_all(unsolved.line(unsolved.cells(0)), {"did not converge"}));
 }
 
 TEST(Sweep, RefusesAGridOfWhichNoSceneCanBeRead) {
