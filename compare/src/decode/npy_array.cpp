@@ -19,14 +19,6 @@ namespace {
 /// arrays, which are not read. std::regex needs stack for each byte.
 constexpr std::size_t longest_header = 1000;
 
-/// Header of an array.
-struct Header {
-  std::string type;  ///< as numpy writes it, such as <f8
-  bool by_columns = false;
-  std::vector<std::size_t> shape;
-  std::size_t begin = 0;  ///< start of the numbers
-};
-
 /// Returns the value of a key of a header, a Python dictionary: the first group of the pattern.
 std::string value_in(const std::string& header, const char* key, const char* pattern,
                      const std::string& name) {
@@ -37,57 +29,17 @@ std::string value_in(const std::string& header, const char* key, const char* pat
       "{}: a header without a {} of plain numbers (allowed: as NumPy saves an array)", name, key));
 }
 
-Header read_header(std::string_view bytes, const std::string& name) {
-  constexpr std::size_t before_length = 8;
-  const std::uint64_t version = unsigned_at(bytes, npy_magic.size(), 1).value_or(0);
-  const std::size_t width = version == 1 ? 2 : 4;
-  const std::optional<std::uint64_t> length = unsigned_at(bytes, before_length, width);
-  if (!bytes.starts_with(npy_magic) || version < 1 || version > 3 || !length) {
-    throw InputError(name + ": not an array as NumPy saves it, of format 1, 2 or 3");
-  }
-  const std::size_t begin = before_length + width;
-  if (*length > longest_header || begin + *length > bytes.size()) {
-    throw InputError(fmt::format("{}: a header of {} bytes (allowed: up to {}, in the file)", name,
-                                 *length, longest_header));
-  }
-  const std::string text(bytes.substr(begin, *length));
-  Header header{.type = value_in(text, "descr", "'([^']*)'", name),
-                .by_columns = value_in(text, "fortran_order", "(True|False)", name) == "True",
-                .shape = {},
-                .begin = begin + *length};
-  const std::string shape = value_in(text, "shape", "\\(([0-9, ]*)\\)", name);
-  for (std::string_view rest = shape; !rest.empty();) {
-    const auto [size, digits, error] = leading_number<std::size_t>(rest);
-    if (error == std::errc::result_out_of_range) {
-      throw InputError(fmt::format("{}: a shape with {} in it", name, quoted_piece(rest)));
-    }
-    if (digits > 0) header.shape.push_back(size);
-    rest.remove_prefix(std::max<std::size_t>(digits, 1));
-  }
-  return header;
-}
-
 /// Returns the number format of a type; empty if it is not supported.
 std::optional<NumberFormat> format_of(std::string_view type) {
-  NumberFormat format;
+  constexpr std::string_view kinds = "fiu";  // in the order of NumberFormat::Kind
   if (type.size() != 3 || std::string_view("<>|=").find(type[0]) == std::string_view::npos) {
     return std::nullopt;
   }
-  format.big_endian = type[0] == '>';
-  format.bytes = static_cast<std::size_t>(type[2] - '0');
-  switch (type[1]) {
-    case 'f':
-      format.kind = NumberFormat::Kind::floating;
-      break;
-    case 'i':
-      format.kind = NumberFormat::Kind::integer;
-      break;
-    case 'u':
-      format.kind = NumberFormat::Kind::natural;
-      break;
-    default:
-      return std::nullopt;
-  }
+  const std::size_t kind = kinds.find(type[1]);
+  if (kind == std::string_view::npos) return std::nullopt;
+  const NumberFormat format{.kind = static_cast<NumberFormat::Kind>(kind),
+                            .bytes = static_cast<std::size_t>(type[2] - '0'),
+                            .big_endian = type[0] == '>'};
   return is_known(format) ? std::optional(format) : std::nullopt;
 }
 
@@ -100,12 +52,31 @@ std::string too_large(const NpyArray& array) {
 
 NpyArray::NpyArray(std::string_view bytes, std::string where)
     : bytes_(bytes), where_(std::move(where)) {
-  Header header = read_header(bytes, where_);
-  format_ = format_of(header.type);
-  type_ = std::move(header.type);
-  by_columns_ = header.by_columns;
-  shape_ = std::move(header.shape);
-  begin_ = header.begin;
+  constexpr std::size_t before_length = 8;
+  const std::uint64_t version = unsigned_at(bytes, npy_magic.size(), 1).value_or(0);
+  const std::size_t width = version == 1 ? 2 : 4;
+  const std::optional<std::uint64_t> length = unsigned_at(bytes, before_length, width);
+  if (!bytes.starts_with(npy_magic) || version < 1 || version > 3 || !length) {
+    fail("not an array as NumPy saves it, of format 1, 2 or 3");
+  }
+  begin_ = before_length + width + *length;
+  if (*length > longest_header || begin_ > bytes.size()) {
+    fail(fmt::format("a header of {} bytes (allowed: up to {}, in the file)", *length,
+                     longest_header));
+  }
+  const std::string header(bytes.substr(before_length + width, *length));
+  type_ = value_in(header, "descr", "'([^']*)'", where_);
+  format_ = format_of(type_);
+  by_columns_ = value_in(header, "fortran_order", "(True|False)", where_) == "True";
+  const std::string shape = value_in(header, "shape", "\\(([0-9, ]*)\\)", where_);
+  for (std::string_view rest = shape; !rest.empty();) {
+    const auto [size, digits, error] = leading_number<std::size_t>(rest);
+    if (error == std::errc::result_out_of_range) {
+      fail(fmt::format("a shape with {} in it", quoted_piece(rest)));
+    }
+    if (digits > 0) shape_.push_back(size);
+    rest.remove_prefix(std::max<std::size_t>(digits, 1));
+  }
 }
 
 std::string NpyArray::shape_text() const {
