@@ -21,8 +21,6 @@
 #include <array>
 #include <cmath>
 #include <cstddef>
-#include <exception>
-#include <iostream>
 #include <stdexcept>
 #include <vector>
 
@@ -182,18 +180,9 @@ class Simulation {
 }  // namespace
 
 int main(int argc, char** argv) {
-  try {
-    if (argc != 3) throw std::runtime_error("usage: bullet SCENE SHAPE");
-    const Chain chain = foreign::read_chain(argv[1]);
+  return foreign::run("bullet", argc, argv, [](const Chain& chain) {
     Simulation simulation(chain);
     simulation.run_to_rest();
-    foreign::write_shape(argv[2], chain, simulation.points());
-    return 0;
-  } catch (const foreign::NotSupported& scene) {
-    std::cerr << "bullet: " << scene.what() << '\n';
-    return foreign::NotSupported::exit_status;
-  } catch (const std::exception& error) {
-    std::cerr << "bullet: " << error.what() << '\n';
-    return 1;
-  }
+    return simulation.points();
+  });
 }

@@ -9,7 +9,10 @@
 #include <array>
 #include <cmath>
 #include <cstddef>
+#include <exception>
 #include <fstream>
+#include <functional>
+#include <iostream>
 #include <nlohmann/json.hpp>
 #include <stdexcept>
 #include <string>
@@ -196,6 +199,24 @@ inline void write_shape(const std::string& path, const Chain& chain,
   for (std::size_t i = 0; i < count; ++i) row(points.at(i), chain.at[i + 1]);
   if (chain.second_clamp) row(chain.end, (chain.at.back() + chain.at[chain.at.size() - 2]) / 2);
   if (!file) throw std::runtime_error(path + ": cannot be written");
+}
+
+/// Runs a simulator as a program with the arguments SCENE SHAPE. Returns its exit status.
+/// @param solve  returns the points of a chain at rest, as write_shape() writes them
+inline int run(const std::string& name, int argc, char** argv,
+               const std::function<std::vector<Vector>(const Chain&)>& solve) {
+  try {
+    if (argc != 3) throw std::runtime_error("usage: " + name + " SCENE SHAPE");
+    const Chain chain = read_chain(argv[1]);
+    write_shape(argv[2], chain, solve(chain));
+    return 0;
+  } catch (const NotSupported& scene) {
+    std::cerr << name << ": " << scene.what() << '\n';
+    return NotSupported::exit_status;
+  } catch (const std::exception& error) {
+    std::cerr << name << ": " << error.what() << '\n';
+    return 1;
+  }
 }
 
 }  // namespace foreign

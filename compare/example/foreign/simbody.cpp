@@ -10,10 +10,6 @@
 #include <Simbody.h>
 
 #include <cstddef>
-#include <exception>
-#include <iostream>
-#include <stdexcept>
-#include <string>
 #include <vector>
 
 #include "chain.hpp"
@@ -130,17 +126,4 @@ std::vector<foreign::Vector> solve(const Chain& chain) {
 
 }  // namespace
 
-int main(int argc, char** argv) {
-  try {
-    if (argc != 3) throw std::runtime_error("usage: simbody SCENE SHAPE");
-    const Chain chain = foreign::read_chain(argv[1]);
-    foreign::write_shape(argv[2], chain, solve(chain));
-    return 0;
-  } catch (const foreign::NotSupported& scene) {
-    std::cerr << "simbody: " << scene.what() << '\n';
-    return foreign::NotSupported::exit_status;
-  } catch (const std::exception& error) {
-    std::cerr << "simbody: " << error.what() << '\n';
-    return 1;
-  }
-}
+int main(int argc, char** argv) { return foreign::run("simbody", argc, argv, solve); }
