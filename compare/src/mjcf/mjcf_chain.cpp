@@ -128,8 +128,7 @@ class ChainFinder {
   [[nodiscard]] bool is_segment(std::size_t holder, const std::vector<std::size_t>& along) const {
     const MjcfBody& body = world_.bodies[holder];
     if (world_.composite && body.node == world_.composite) return true;
-    const Vector3d joint =
-        body.pose.inverse() * (world_.bodies[along.front()].pose * begin_of(along.front()));
+    const Vector3d joint = segment_start_in(along.front(), holder);
     const Vector3d next = along.size() > 1 ? segment_start_in(along[1], along[0]) : joint;
     const double h = along.size() > 1 ? (next - begin_of(along[0])).norm() : joint.norm();
     return nearly_equal(joint.norm(), h) &&
@@ -187,6 +186,7 @@ class ChainFinder {
   }
 
   void set_mass() {
+    double largest_offset = 0;  // of a centre of mass from the middle of its segment, in segments
     for (const MjcfSegment& segment : chain_.segments) {
       const MjcfBody& body = body_of(segment);
       chain_.mass += body.mass;
@@ -196,14 +196,13 @@ class ChainFinder {
       if (body.mass > 0 && across > axis_tolerance * segment.length()) {
         refuse(segment, fmt::format("has its mass {:.4g} m off its axis (allowed: on it)", across));
       }
-      const double offset = along / segment.length() - 0.5;
-      if (body.mass > 0 && std::abs(offset) > largest_centre_offset_)
-        largest_centre_offset_ = std::abs(offset);
+      const double offset = std::abs(along / segment.length() - 0.5);
+      if (body.mass > 0 && offset > largest_offset) largest_offset = offset;
     }
-    if (largest_centre_offset_ > 1e-2) {
+    if (largest_offset > 1e-2) {
       chain_.notes.push_back(
           fmt::format("mass of segments made uniform: centres move up to {:.2g} segment lengths",
-                      largest_centre_offset_));
+                      largest_offset));
     }
   }
 
@@ -227,110 +226,96 @@ class ChainFinder {
       }
       before = t;
     }
-    const std::optional<MjcfPlugin>& plugin = plugin_of(chain_.segments.back());
+    const std::optional<MjcfPlugin>& plugin = body_of(chain_.segments.back()).plugin;
     if (chain_.is_curved && plugin && plugin->flat) {
       chain_.is_curved = false;
       chain_.notes.emplace_back("the stress-free cable is straight (flat)");
     }
   }
 
-  [[nodiscard]] const std::optional<MjcfPlugin>& plugin_of(const MjcfSegment& segment) const {
-    return body_of(segment).plugin;
+  /// Computes EI from the springs: each is multiplied by the length that it represents, half of
+  /// both adjacent segments.
+  void set_joints() {
+    for (std::size_t i = 1; i < chain_.segments.size(); ++i) {
+      const MjcfSegment& segment = chain_.segments[i];
+      const double h = (segment.length() + chain_.segments[i - 1].length()) / 2;
+      refusals_.attempt([&] {
+        springs_.push_back(mjcf_spring(xml_, body_of(segment), segment.direction(), h));
+        require_axis(segment, springs_.back());
+        if (springs_.back().bending > 0) return;
+        fail(segment,
+             "has no spring in its joint (allowed: stiffness > 0, or the plugin "
+             "mujoco.elasticity.cable with bend > 0)");
+      });
+    }
+    if (springs_.empty()) return;
+    const bool twists = std::ranges::all_of(springs_, [](const auto& s) { return s.twisting > 0; });
+    for (const MjcfSpring& spring : springs_) {
+      const auto count = static_cast<double>(springs_.size());
+      chain_.bending_stiffness += spring.bending / count;
+      if (twists) chain_.torsional_stiffness += spring.twisting / count;
+    }
+    chain_.hinge = springs_.front().hinge;
+    chain_.spring = chain_.bending_stiffness / chain_.segments.front().length();
+    for (const MjcfSegment& segment : chain_.segments) {
+      if (!std::ranges::any_of(body_of(segment).joints, &MjcfJoint::is_limited)) continue;
+      chain_.notes.emplace_back("limits of joints are assumed not to be reached");
+      return;
+    }
   }
 
-  void set_joints();
-  void set_sections();
-  void require_axis(const MjcfSegment& segment, const MjcfSpring& spring) const;
-  [[nodiscard]] MjcfSection section(double from, double to) const;
+  void require_axis(const MjcfSegment& segment, const MjcfSpring& spring) const {
+    const Vector3d& first = springs_.front().hinge;
+    if (first.cross(spring.hinge).norm() <= collinear_angle &&
+        (first.norm() > 0) == (spring.hinge.norm() > 0)) {
+      return;
+    }
+    xml_.fail(body_of(segment).joints.front().node, "axis",
+              "differs from the axis of the first joint (allowed: one axis for all bodies)");
+  }
+
+  /// Sets stiffnesses and masses of halves of segments, of which equal ones are joined.
+  void set_sections() {
+    const std::size_t halves = 2 * chain_.segments.size();
+    const double half = chain_.length / static_cast<double>(halves);
+    const double h = chain_.length / static_cast<double>(chain_.segments.size());
+    std::vector<MjcfSection>& sections = chain_.sections;
+    for (std::size_t i = 0; i < halves; ++i) {
+      const double from = static_cast<double>(i) * half;
+      const double to = i + 1 == halves ? chain_.length : from + half;
+      const double middle = (from + to) / 2;
+      const auto segment = static_cast<std::size_t>(middle / h);
+      // The spring of joint i, between segments i and i + 1, represents the part of the rod that is
+      // nearest to it.
+      const double joint =
+          std::clamp(std::round(middle / h) - 1, 0.0, static_cast<double>(springs_.size()) - 1);
+      const MjcfSpring& spring = springs_[static_cast<std::size_t>(joint)];
+      const MjcfSection next{from, to, spring.bending,
+                             chain_.torsional_stiffness > 0 ? spring.twisting : 0,
+                             body_of(chain_.segments[segment]).mass / h};
+      const bool has_next_section =
+          !sections.empty() &&
+          nearly_equal(sections.back().bending_stiffness, next.bending_stiffness) &&
+          nearly_equal(sections.back().torsional_stiffness, next.torsional_stiffness) &&
+          nearly_equal(sections.back().mass_per_length, next.mass_per_length);
+      if (has_next_section) {
+        sections.back().to = next.to;
+      } else {
+        sections.push_back(next);
+      }
+    }
+    if (sections.size() == 1) return sections.clear();
+    const auto [softest, stiffest] = std::ranges::minmax(springs_, {}, &MjcfSpring::bending);
+    chain_.notes.push_back(fmt::format("the cable has {} sections, EI {:.4g} to {:.4g} N m^2",
+                                       sections.size(), softest.bending, stiffest.bending));
+  }
 
   const XmlFile& xml_;
   XmlRefusals& refusals_;
   const MjcfWorld& world_;
   MjcfChain chain_;
-  // Largest distance of a centre of mass from the middle of its segment, in segments.
-  double largest_centre_offset_ = 0;
   std::vector<MjcfSpring> springs_;  // between segments, in the order of the chain
 };
-
-/// Computes EI from the springs: each is multiplied by the length that it represents, half of both
-/// adjacent segments.
-void ChainFinder::set_joints() {
-  for (std::size_t i = 1; i < chain_.segments.size(); ++i) {
-    const MjcfSegment& segment = chain_.segments[i];
-    const double h = (segment.length() + chain_.segments[i - 1].length()) / 2;
-    refusals_.attempt([&] {
-      springs_.push_back(mjcf_spring(xml_, body_of(segment), segment.direction(), h));
-      require_axis(segment, springs_.back());
-      if (springs_.back().bending > 0) return;
-      fail(segment,
-           "has no spring in its joint (allowed: stiffness > 0, or the plugin "
-           "mujoco.elasticity.cable with bend > 0)");
-    });
-  }
-  if (springs_.empty()) return;
-  const bool twists = std::ranges::all_of(springs_, [](const auto& s) { return s.twisting > 0; });
-  for (const MjcfSpring& spring : springs_) {
-    const auto count = static_cast<double>(springs_.size());
-    chain_.bending_stiffness += spring.bending / count;
-    if (twists) chain_.torsional_stiffness += spring.twisting / count;
-  }
-  chain_.hinge = springs_.front().hinge;
-  chain_.spring = chain_.bending_stiffness / chain_.segments.front().length();
-  for (const MjcfSegment& segment : chain_.segments) {
-    if (!std::ranges::any_of(body_of(segment).joints, &MjcfJoint::is_limited)) continue;
-    chain_.notes.emplace_back("limits of joints are assumed not to be reached");
-    return;
-  }
-}
-
-void ChainFinder::require_axis(const MjcfSegment& segment, const MjcfSpring& spring) const {
-  const Vector3d& first = springs_.front().hinge;
-  if (first.cross(spring.hinge).norm() <= collinear_angle &&
-      (first.norm() > 0) == (spring.hinge.norm() > 0)) {
-    return;
-  }
-  xml_.fail(body_of(segment).joints.front().node, "axis",
-            "differs from the axis of the first joint (allowed: one axis for all bodies)");
-}
-
-/// Returns stiffnesses and mass between two adjacent ends or middles of segments.
-MjcfSection ChainFinder::section(double from, double to) const {
-  const double h = chain_.length / static_cast<double>(chain_.segments.size());
-  const double middle = (from + to) / 2;
-  const auto segment = static_cast<std::size_t>(middle / h);
-  // The spring of joint i, between segments i and i + 1, represents the part of the rod that is
-  // nearest to it.
-  const double joint =
-      std::clamp(std::round(middle / h) - 1, 0.0, static_cast<double>(springs_.size()) - 1);
-  const MjcfSpring& spring = springs_[static_cast<std::size_t>(joint)];
-  return {from, to, spring.bending, chain_.torsional_stiffness > 0 ? spring.twisting : 0,
-          body_of(chain_.segments[segment]).mass / h};
-}
-
-void ChainFinder::set_sections() {
-  const std::size_t halves = 2 * chain_.segments.size();
-  const double half = chain_.length / static_cast<double>(halves);
-  std::vector<MjcfSection>& sections = chain_.sections;
-  for (std::size_t i = 0; i < halves; ++i) {
-    const double from = static_cast<double>(i) * half;
-    MjcfSection next = section(from, i + 1 == halves ? chain_.length : from + half);
-    const bool has_next_section =
-        !sections.empty() &&
-        nearly_equal(sections.back().bending_stiffness, next.bending_stiffness) &&
-        nearly_equal(sections.back().torsional_stiffness, next.torsional_stiffness) &&
-        nearly_equal(sections.back().mass_per_length, next.mass_per_length);
-    if (has_next_section) {
-      sections.back().to = next.to;
-    } else {
-      sections.push_back(next);
-    }
-  }
-  if (sections.size() == 1) return sections.clear();
-  const auto [softest, stiffest] =
-      std::ranges::minmax(springs_, {}, [](const MjcfSpring& spring) { return spring.bending; });
-  chain_.notes.push_back(fmt::format("the cable has {} sections, EI {:.4g} to {:.4g} N m^2",
-                                     sections.size(), softest.bending, stiffest.bending));
-}
 
 }  // namespace
 

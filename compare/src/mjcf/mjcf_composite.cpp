@@ -78,12 +78,6 @@ std::vector<Vector3d> curve_vertices(const MjcfNode& node) {
   return points;
 }
 
-/// Returns the next frame, with x along its segment: the previous frame, rotated by the smallest
-/// rotation.
-Quaterniond next_frame(const Quaterniond& before, const Vector3d& edge) {
-  return Quaterniond::FromTwoVectors(before * Vector3d::UnitX(), edge) * before;
-}
-
 /// Elements of a composite that apply to all its bodies.
 struct SharedElements {
   pugi::xml_node geom, joint, plugin;
@@ -107,10 +101,6 @@ SharedElements shared_elements(const MjcfNode& node) {
   }
   if (!parts.geom) node.fail("has no <geom> (allowed: a capsule or a cylinder)");
   return parts;
-}
-
-std::string body_name(std::size_t i, std::size_t bodies) {
-  return i == 0 ? "B_first" : i + 1 == bodies ? "B_last" : fmt::format("B_{}", i);
 }
 
 }  // namespace
@@ -139,9 +129,10 @@ void add_mjcf_composite(const MjcfNode& node, const MjcfPose& at, std::size_t pa
     if (!(edge.norm() > shortest_edge)) {
       node.fail(fmt::format("has vertices {} and {} at one place (allowed: apart)", i + 1, i + 2));
     }
-    frame = next_frame(frame, edge);
+    // The frame with x along the segment is rotated by the smallest rotation.
+    frame = Quaterniond::FromTwoVectors(frame * Vector3d::UnitX(), edge) * frame;
     MjcfBody body;
-    body.name = prefix + body_name(i, bodies);
+    body.name = prefix + (i == 0 ? "B_first" : i + 1 == bodies ? "B_last" : fmt::format("B_{}", i));
     body.parent = i == 0 ? parent : world.bodies.size() - 1;
     body.pose = at * MjcfPose(Eigen::Translation3d(offset + points[i]) * frame);
     body.node = node.element;

@@ -74,43 +74,9 @@ void span(const MjcfNode& node, const Vector3d& from, const Vector3d& to, MjcfGe
   geom.size[geom.is_round() ? 1 : 2] = axis.norm() / 2;
 }
 
-void read_mass(const MjcfNode& node, MjcfGeom& geom) {
-  const std::optional<double> mass = node.number("mass");
-  const double density = node.number("density").value_or(default_density);
-  if (!(mass.value_or(0) >= 0)) node.fail("mass", "(allowed: 0 or more)");
-  if (!(density >= 0)) node.fail("density", "(allowed: 0 or more)");
-  if (node.choice("shellinertia", {"false", "true"}) == 1 && !mass) {
-    node.fail("shellinertia", "of a mass that is not given (allowed: mass)");
-  }
-  geom.mass = mass.value_or(density * mjcf_volume(geom));
-}
-
-int collision_bits(const MjcfNode& node, const char* attribute) {
-  const std::optional<std::string> given = node.text(attribute);
-  if (!given) return 1;
-  const std::optional<int> bits = as_number<int>(*given);
-  if (!bits) node.fail(attribute, "is no integer of 32 bits");
-  return *bits;
-}
-
-void read_contact(const MjcfNode& node, MjcfGeom& geom) {
-  geom.contype = collision_bits(node, "contype");
-  geom.conaffinity = collision_bits(node, "conaffinity");
-  const auto friction = node.numbers("friction", 1, 3);
-  if (friction) geom.friction = friction->front();
-  if (!(geom.friction >= 0)) node.fail("friction", "(allowed: 0 or more)");
-}
-
-}  // namespace
-
-Vector3d MjcfGeom::end(double sign) const {
-  Eigen::Index axis = 2;
-  double half = is_round() ? size[1] : 0;
-  if (type == Type::box) half = size.maxCoeff(&axis);
-  return pose * (sign * half * Vector3d::Unit(axis));
-}
-
-double mjcf_volume(const MjcfGeom& geom) {
+/// Returns the volume [m^3]; that of a capsule is a cylinder and a sphere, its two caps; 0 for
+/// planes and other geoms.
+double volume_of(const MjcfGeom& geom) {
   const double r = geom.size[0];
   switch (geom.type) {
     case Type::sphere:
@@ -130,11 +96,42 @@ double mjcf_volume(const MjcfGeom& geom) {
   return 0;
 }
 
+int collision_bits(const MjcfNode& node, const char* attribute) {
+  const std::optional<std::string> given = node.text(attribute);
+  if (!given) return 1;
+  const std::optional<int> bits = as_number<int>(*given);
+  if (!bits) node.fail(attribute, "is no integer of 32 bits");
+  return *bits;
+}
+
+void read_mass_and_contact(const MjcfNode& node, MjcfGeom& geom) {
+  const std::optional<double> mass = node.number("mass");
+  const double density = node.number("density").value_or(default_density);
+  if (!(mass.value_or(0) >= 0)) node.fail("mass", "(allowed: 0 or more)");
+  if (!(density >= 0)) node.fail("density", "(allowed: 0 or more)");
+  if (node.choice("shellinertia", {"false", "true"}) == 1 && !mass) {
+    node.fail("shellinertia", "of a mass that is not given (allowed: mass)");
+  }
+  geom.mass = mass.value_or(density * volume_of(geom));
+  geom.contype = collision_bits(node, "contype");
+  geom.conaffinity = collision_bits(node, "conaffinity");
+  const auto friction = node.numbers("friction", 1, 3);
+  if (friction) geom.friction = friction->front();
+  if (!(geom.friction >= 0)) node.fail("friction", "(allowed: 0 or more)");
+}
+
+}  // namespace
+
+Vector3d MjcfGeom::end(double sign) const {
+  Eigen::Index axis = 2;
+  double half = is_round() ? size[1] : 0;
+  if (type == Type::box) half = size.maxCoeff(&axis);
+  return pose * (sign * half * Vector3d::Unit(axis));
+}
+
 MjcfGeom read_mjcf_geom(const MjcfNode& node, const MjcfPose& at) {
   node.require_known();
-  MjcfGeom geom;
-  geom.node = node.element;
-  geom.type = type_of(node);
+  MjcfGeom geom{.type = type_of(node), .node = node.element};
   const auto ends = node.numbers("fromto", 6, 6);
   const bool has_ends = ends && sizes_of(geom.type) > 1;
   if (ends && !has_ends) {
@@ -149,8 +146,7 @@ MjcfGeom read_mjcf_geom(const MjcfNode& node, const MjcfPose& at) {
     geom.pose = node.pose();
   }
   geom.pose = at * geom.pose;
-  read_mass(node, geom);
-  read_contact(node, geom);
+  read_mass_and_contact(node, geom);
   return geom;
 }
 
@@ -162,9 +158,7 @@ MjcfGeom read_composite_geom(const MjcfNode& node, double length) {
       node.fail(attribute, "of a composite's geom (allowed: none)");
     }
   }
-  MjcfGeom geom;
-  geom.node = node.element;
-  geom.type = type_of(node);
+  MjcfGeom geom{.type = type_of(node), .node = node.element};
   if (!geom.is_round()) {
     node.fail("type",
               "of a composite cable whose bending is that of a round rod (allowed: "
@@ -172,8 +166,7 @@ MjcfGeom read_composite_geom(const MjcfNode& node, double length) {
   }
   geom.size = read_size(node, geom.type, 1);
   span(node, Vector3d::Zero(), length * Vector3d::UnitX(), geom);
-  read_mass(node, geom);
-  read_contact(node, geom);
+  read_mass_and_contact(node, geom);
   return geom;
 }
 

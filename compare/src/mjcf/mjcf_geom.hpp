@@ -30,10 +30,6 @@ struct MjcfGeom {
   }
 };
 
-/// Returns the volume [m^3]; that of a capsule is a cylinder and a sphere, its two caps; 0 for
-/// planes and other geoms.
-[[nodiscard]] double mjcf_volume(const MjcfGeom& geom);
-
 /// Reads a geom. @param at  pose of the surrounding frames, in the body
 [[nodiscard]] MjcfGeom read_mjcf_geom(const MjcfNode& node, const MjcfPose& at);
 

@@ -142,12 +142,15 @@ class GripperFinder {
     const MjcfSegment& segment = chain_.segments[k];
     MjcfPose pose = body_of(k).pose;
     const auto relative = constraint.numbers("relpose", 7, 7);
-    const bool moved = by_sites || (relative && has_rotation(*relative));
+    const bool moved = by_sites || (relative && std::any_of(relative->begin() + 3, relative->end(),
+                                                            [](double q) { return q != 0; }));
     if (by_sites) {
       pose = world_.bodies[second.body].pose * second.frame * first.frame.inverse();
     } else if (moved) {
       // Pose of the second body in the frame of the first one.
-      const MjcfPose relative_pose = pose_of(*relative);
+      const std::vector<double>& v = *relative;
+      const MjcfPose relative_pose(Eigen::Translation3d(v[0], v[1], v[2]) *
+                                   Eigen::Quaterniond(v[3], v[4], v[5], v[6]).normalized());
       const MjcfPose other = world_.bodies[second.body].pose;
       pose = swapped ? other * relative_pose : other * relative_pose.inverse();
     }
@@ -200,15 +203,6 @@ class GripperFinder {
     if (hold.at < slack) hold.at = 0;
     hold.words = fmt::format("<connect> holds {}", quoted_piece(body_of(k).name));
     add_gripper(constraint, std::move(hold));
-  }
-
-  static bool has_rotation(const std::vector<double>& relpose) {
-    return std::any_of(relpose.begin() + 3, relpose.end(), [](double q) { return q != 0; });
-  }
-
-  static MjcfPose pose_of(const std::vector<double>& v) {
-    return MjcfPose(Eigen::Translation3d(v[0], v[1], v[2]) *
-                    Eigen::Quaterniond(v[3], v[4], v[5], v[6]).normalized());
   }
 
   /// Returns a unit vector perpendicular to the rod, transported without twist along its reference
