@@ -135,7 +135,8 @@ class Chain {
 
   /// Whether the grippers of this scene can hold the chain; prepares its problem.
   [[nodiscard]] bool prepare_if_holdable() {
-    if (!hold() || !keeps_points_apart()) return false;
+    // No held point may be moved to where its neighbour in the file is.
+    if (!hold() || !(chord_lengths(start()).minCoeff() > 0)) return false;
     lay_out();
     add_twists();
     return true;
@@ -174,6 +175,19 @@ class Chain {
         .clamp = clamp_, .rms_m = rms_of(gaps), .stiffness = stiffness, .law = law};
     result.max_m = std::sqrt(gaps.colwise().squaredNorm().maxCoeff());
     result.rest = {s_, std::move(rest)};
+    if (law == JointLaw::paper) {
+      result.paper_stiffness = stiffness * problem_.stiffness;
+      return result;
+    }
+    const Eigen::VectorXd& h = problem_.rest_lengths;
+    for (Eigen::Index j = 0; j + 1 < h.size(); ++j) {
+      const double EI =
+          problem_.stiffnesses.size() > 0 ? problem_.stiffnesses[j] : problem_.stiffness;
+      // With a hinge at the clamp the first joint is at the first point, otherwise at the point
+      // behind it.
+      result.joints.push_back(s_[static_cast<std::size_t>(j + 1 - before_)]);
+      result.springs.push_back(stiffness * EI / ((h[j] + h[j + 1]) / 2));
+    }
     return result;
   }
 
@@ -186,23 +200,6 @@ class Chain {
     const auto count = static_cast<double>(points_.cols());
     const Eigen::Vector3d weight = scene_.weight_between(0, scene_.length) / count;
     problem_.node_forces += (-weights_).colwise() + weight;
-  }
-
-  /// Sets the joints and springs of a result, or c_b of the paper's law.
-  void add_springs(CandidateChain& polygon) const {
-    if (polygon.law == JointLaw::paper) {
-      polygon.paper_stiffness = polygon.stiffness * problem_.stiffness;
-      return;
-    }
-    const Eigen::VectorXd& h = problem_.rest_lengths;
-    for (Eigen::Index j = 0; j + 1 < h.size(); ++j) {
-      const double EI =
-          problem_.stiffnesses.size() > 0 ? problem_.stiffnesses[j] : problem_.stiffness;
-      // With a hinge at the clamp the first joint is at the first point, otherwise at the point
-      // behind it.
-      polygon.joints.push_back(s_[static_cast<std::size_t>(j + 1 - before_)]);
-      polygon.springs.push_back(polygon.stiffness * EI / ((h[j] + h[j + 1]) / 2));
-    }
   }
 
   [[nodiscard]] double rms_of(const Eigen::Matrix3Xd& gaps) const { return rms(s_, gaps); }
@@ -292,9 +289,6 @@ class Chain {
     std::ranges::sort(points);
     return std::ranges::adjacent_find(points) != points.end();
   }
-
-  /// Whether no held point is moved to where its neighbour in the file is.
-  [[nodiscard]] bool keeps_points_apart() const { return chord_lengths(start()).minCoeff() > 0; }
 
   void lay_out() {
     const Eigen::Index n = inner_.size();
@@ -474,9 +468,7 @@ std::vector<CandidateChain> candidate_chains(const Scene& scene, const Shape& sh
     if (law == JointLaw::paper) chain.set_paper_law();
     const std::optional<CandidateChain> one =
         law ? with_law(chain, springs, *law) : with_best_law(chain, springs, scene.length);
-    if (!one) continue;
-    found.push_back(*one);
-    chain.add_springs(found.back());
+    if (one) found.push_back(*one);
   }
   return found;
 }
