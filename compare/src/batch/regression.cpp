@@ -27,27 +27,6 @@
 namespace dlo::compare {
 namespace {
 
-/// Measures one case; a solver that does not converge is reported as its problem.
-/// @param program  foreign program; null: the request's model
-MeasuredCase measured_case(const Scene& scene, const RegressRequest& request,
-                           const ForeignProgram* program) {
-  try {
-    MeasuredCase result = program != nullptr
-                              ? measure_program(scene, *program, request.solve)
-                              : MeasuredCase{measure_case(scene, request.model, request.solve), ""};
-    if (request.tolerance.of_deflection) {
-      const energy_model::Equilibrium loaded = solve_reference(scene, request.solve);
-      result.deflection_share =
-          required_deflection(scene, trivial_shape(scene, loaded, request.solve)) / scene.length;
-    }
-    return result;
-  } catch (const ConvergenceError& error) {
-    BaselineCase entry = case_of(scene, program != nullptr ? Model::force : request.model);
-    if (program != nullptr) entry.program = program->name;
-    return {std::move(entry), error.what()};
-  }
-}
-
 std::string case_xml(const JunitCase& one) {
   std::string text = fmt::format("    <testcase classname=\"{}\" name=\"{}\" time=\"{:.3f}\">",
                                  escape_markup(one.group), escape_markup(one.name), one.seconds);
@@ -142,32 +121,6 @@ std::string content_of(const Scene& scene) {
   return text;
 }
 
-/// Returns, by name of a measured case, the case of the baseline that it replaces. A case replaces
-/// another if both are the only unmatched cases of the same scene and solver.
-std::map<std::string, const BaselineCase*> replaced_cases(
-    const std::vector<BaselineCase>& baseline, const std::vector<MeasuredCase>& measured) {
-  std::map<std::string, const BaselineCase*> before;
-  std::map<std::string, const BaselineCase*> now;
-  for (const BaselineCase& entry : baseline) before[entry.name()] = &entry;
-  for (const MeasuredCase& measurement : measured) {
-    now[measurement.entry.name()] = &measurement.entry;
-  }
-  using Cases = std::vector<const BaselineCase*>;
-  std::map<std::pair<std::string, std::string>, std::pair<Cases, Cases>> unmatched;
-  for (const auto& [name, entry] : before) {
-    if (!now.contains(name)) unmatched[{entry->scene, entry->solver()}].first.push_back(entry);
-  }
-  for (const auto& [name, entry] : now) {
-    if (!before.contains(name)) unmatched[{entry->scene, entry->solver()}].second.push_back(entry);
-  }
-  std::map<std::string, const BaselineCase*> replaced;
-  for (const auto& [scene, cases] : unmatched) {
-    if (cases.first.size() != 1 || cases.second.size() != 1) continue;
-    replaced[cases.second.front()->name()] = cases.first.front();
-  }
-  return replaced;
-}
-
 /// Returns the settings in which a case differs from another one of its scene, such as "law hooke,
 /// N = 16".
 std::string differing_settings(const BaselineCase& entry, const BaselineCase& other) {
@@ -193,14 +146,30 @@ std::string describe_change(const BaselineCase& before, const BaselineCase& now)
                                                         : "";
 }
 
-/// Returns the cases of a baseline, keyed by the names that they have in this run.
+/// Returns the cases of a baseline, keyed by the names that they have in this run. A case of the
+/// run replaces another one of the baseline if both are the only unmatched cases of the same scene
+/// and solver.
 std::map<std::string, const BaselineCase*> expected_cases(
     const std::vector<BaselineCase>& baseline, const std::vector<MeasuredCase>& measured) {
   std::map<std::string, const BaselineCase*> expected;
+  std::map<std::string, const BaselineCase*> now;
   for (const BaselineCase& entry : baseline) expected[entry.name()] = &entry;
-  for (const auto& [name, entry] : replaced_cases(baseline, measured)) {
-    expected.erase(entry->name());
-    expected[name] = entry;
+  for (const MeasuredCase& measurement : measured) {
+    now[measurement.entry.name()] = &measurement.entry;
+  }
+  using Cases = std::vector<const BaselineCase*>;
+  std::map<std::pair<std::string, std::string>, std::pair<Cases, Cases>> unmatched;
+  for (const auto& [name, entry] : expected) {
+    if (!now.contains(name)) unmatched[{entry->scene, entry->solver()}].first.push_back(entry);
+  }
+  for (const auto& [name, entry] : now) {
+    if (expected.contains(name)) continue;
+    unmatched[{entry->scene, entry->solver()}].second.push_back(entry);
+  }
+  for (const auto& [scene, cases] : unmatched) {
+    if (cases.first.size() != 1 || cases.second.size() != 1) continue;
+    expected.erase(cases.first.front()->name());
+    expected[cases.second.front()->name()] = cases.first.front();
   }
   return expected;
 }
@@ -250,6 +219,48 @@ ShapeErrors errors_of(const Scene& scene, const Deviation& deviation) {
   ShapeErrors errors{deviation.rms_over_length, deviation.max_m / scene.length, std::nullopt};
   if (std::isfinite(deviation.tip_m)) errors.tip = deviation.tip_m / scene.length;
   return errors;
+}
+
+/// Runs a foreign program on a scene, with the scene's number of points, and measures the distance
+/// of its shape from the energy model's. @throws ConvergenceError, InputError of the energy model;
+/// OutputError as run_foreign()
+void measure_program(const Scene& scene, const ForeignProgram& program, const SolveOptions& options,
+                     MeasuredCase& result) {
+  const SimulatorRun run = run_foreign(program, scene, result.entry.points, options.time_limit);
+  result.problem = run.problem;
+  if (!run.shape) return;
+  result.note = fmt::format("{}", fmt::join(run.shape->notes, "; "));
+  const energy_model::Equilibrium energy = solve_reference(scene, options);
+  try {
+    result.entry.errors = errors_of(scene, foreign_deviation(scene, *run.shape, energy.sample));
+  } catch (const InputError& error) {
+    result.problem = error.what();
+  }
+}
+
+/// Measures one case; a solver that does not converge is reported as its problem.
+/// @param program  foreign program; null: the request's model
+MeasuredCase measured_case(const Scene& scene, const RegressRequest& request,
+                           const ForeignProgram* program) {
+  MeasuredCase unsolved{case_of(scene, program != nullptr ? Model::force : request.model), ""};
+  if (program != nullptr) unsolved.entry.program = program->name;
+  try {
+    MeasuredCase result = unsolved;
+    if (program != nullptr) {
+      measure_program(scene, *program, request.solve, result);
+    } else {
+      result.entry = measure_case(scene, request.model, request.solve);
+    }
+    if (request.tolerance.of_deflection) {
+      const energy_model::Equilibrium loaded = solve_reference(scene, request.solve);
+      result.deflection_share =
+          required_deflection(scene, trivial_shape(scene, loaded, request.solve)) / scene.length;
+    }
+    return result;
+  } catch (const ConvergenceError& error) {
+    unsolved.problem = error.what();
+    return unsolved;
+  }
 }
 
 }  // namespace
@@ -314,24 +325,6 @@ BaselineCase measure_case(const Scene& scene, Model model, const SolveOptions& o
   const energy_model::Equilibrium energy = solve_reference(scene, options);
   BaselineCase result = case_of(scene, model);
   result.errors = errors_of(scene, shape_deviation(scene, solution.shape, energy.sample));
-  return result;
-}
-
-MeasuredCase measure_program(const Scene& scene, const ForeignProgram& program,
-                             const SolveOptions& options) {
-  MeasuredCase result{case_of(scene, Model::force), ""};
-  BaselineCase& entry = result.entry;
-  entry.program = program.name;
-  const SimulatorRun run = run_foreign(program, scene, entry.points, options.time_limit);
-  result.problem = run.problem;
-  if (!run.shape) return result;
-  result.note = fmt::format("{}", fmt::join(run.shape->notes, "; "));
-  const energy_model::Equilibrium energy = solve_reference(scene, options);
-  try {
-    entry.errors = errors_of(scene, foreign_deviation(scene, *run.shape, energy.sample));
-  } catch (const InputError& error) {
-    result.problem = error.what();
-  }
   return result;
 }
 

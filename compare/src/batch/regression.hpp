@@ -96,12 +96,6 @@ struct MeasuredCase {
   double deflection_share = 1;
 };
 
-/// Runs a foreign program on a scene, with the scene's number of points, and measures the distance
-/// of its shape from the energy model's. @throws ConvergenceError, InputError of the energy model;
-/// OutputError as run_foreign()
-[[nodiscard]] MeasuredCase measure_program(const Scene& scene, const ForeignProgram& program,
-                                           const SolveOptions& options = {});
-
 /// Compares the cases of the baseline and of this run, sorted by name. A case is worse if any of
 /// its errors is worse, and better if none is worse and any is better. An error that only one side
 /// has is worse. A case is changed, whatever its errors, in two cases: its scene's fingerprint
