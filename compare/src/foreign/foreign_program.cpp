@@ -91,68 +91,6 @@ std::string last_words(const std::string& file) {
   }
 }
 
-void require_end(const Scene& scene, const Shape& aligned, bool has_arc_lengths, bool at_start) {
-  constexpr double share = 0.01;
-  const double end = at_start ? 0 : scene.length;
-  const double outermost = at_start ? aligned.arc_length.front() : aligned.arc_length.back();
-  const double allowed = share * scene.length + (has_arc_lengths ? std::abs(end - outermost) : 0);
-  const Eigen::Vector3d point = aligned.points.col(at_start ? 0 : aligned.points.cols() - 1);
-  for (const Gripper& gripper : scene.grippers) {
-    const double distance = (point - gripper.position).norm();
-    if (gripper.at != end || distance <= allowed) continue;
-    throw InputError(
-        fmt::format("wrong end: the shape is {:.3g} m from the gripper at s = {:g} m (allowed: "
-                    "{:.3g} m)",
-                    distance, end, allowed));
-  }
-}
-
-}  // namespace
-
-bool is_program_name(const std::string& name) {
-  constexpr std::string_view name_characters =
-      "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789_.-+";
-  return !name.empty() && name != "." && name != ".." &&
-         name.find_first_not_of(name_characters) == std::string::npos;
-}
-
-ForeignProgram parse_foreign_program(const std::string& text) {
-  const std::size_t equals = text.find('=');
-  const std::string name = text.substr(0, equals);
-  const std::vector<std::string> models = names<Model>();
-  const bool is_dlo_model = std::find(models.begin(), models.end(), name) != models.end();
-  if (equals == std::string::npos || is_dlo_model || !is_program_name(name)) {
-    throw InputError(
-        fmt::format("--with = {}: {} (allowed: NAME=COMMAND, NAME of letters, digits and _.-+, not "
-                    "energy, chain, exact or force)",
-                    quoted_piece(text),
-                    equals == std::string::npos ? "no NAME before an =" : "not such a NAME"));
-  }
-  ForeignProgram program{name, command_words(text.substr(equals + 1), "--with " + name)};
-  if (!is_mentioned(program.words, shape_place)) {
-    throw InputError(fmt::format(
-        "--with {}: no {{shape}} in the command (allowed: a command with {{shape}}, the file to "
-        "write, and where it has a use for them {{scene}}, the file to read, and {{points}}, their "
-        "number)",
-        name));
-  }
-  return program;
-}
-
-std::vector<ForeignProgram> parse_foreign_programs(const std::vector<std::string>& texts) {
-  std::vector<ForeignProgram> programs;
-  std::set<std::string> taken;
-  for (const std::string& text : texts) {
-    programs.push_back(parse_foreign_program(text));
-    if (taken.insert(programs.back().name).second) continue;
-    throw InputError(fmt::format("--with {}: given twice (allowed: a name of its own for each)",
-                                 programs.back().name));
-  }
-  return programs;
-}
-
-namespace {
-
 /// Name of the shape's file in messages. The folder does not exist any more when a message is read.
 constexpr const char* shape_name = "its shape";
 
@@ -224,6 +162,48 @@ void read_motion(const std::string& file, SimulatorRun& result) {
 
 }  // namespace
 
+bool is_program_name(const std::string& name) {
+  constexpr std::string_view name_characters =
+      "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789_.-+";
+  return !name.empty() && name != "." && name != ".." &&
+         name.find_first_not_of(name_characters) == std::string::npos;
+}
+
+ForeignProgram parse_foreign_program(const std::string& text) {
+  const std::size_t equals = text.find('=');
+  const std::string name = text.substr(0, equals);
+  const std::vector<std::string> models = names<Model>();
+  const bool is_dlo_model = std::find(models.begin(), models.end(), name) != models.end();
+  if (equals == std::string::npos || is_dlo_model || !is_program_name(name)) {
+    throw InputError(
+        fmt::format("--with = {}: {} (allowed: NAME=COMMAND, NAME of letters, digits and _.-+, not "
+                    "energy, chain, exact or force)",
+                    quoted_piece(text),
+                    equals == std::string::npos ? "no NAME before an =" : "not such a NAME"));
+  }
+  ForeignProgram program{name, command_words(text.substr(equals + 1), "--with " + name)};
+  if (!is_mentioned(program.words, shape_place)) {
+    throw InputError(fmt::format(
+        "--with {}: no {{shape}} in the command (allowed: a command with {{shape}}, the file to "
+        "write, and where it has a use for them {{scene}}, the file to read, and {{points}}, their "
+        "number)",
+        name));
+  }
+  return program;
+}
+
+std::vector<ForeignProgram> parse_foreign_programs(const std::vector<std::string>& texts) {
+  std::vector<ForeignProgram> programs;
+  std::set<std::string> taken;
+  for (const std::string& text : texts) {
+    programs.push_back(parse_foreign_program(text));
+    if (taken.insert(programs.back().name).second) continue;
+    throw InputError(fmt::format("--with {}: given twice (allowed: a name of its own for each)",
+                                 programs.back().name));
+  }
+  return programs;
+}
+
 SimulatorRun run_foreign(const ForeignProgram& program, Scene scene, int points,
                          double time_limit) {
   scene.force_model.points = points;
@@ -241,7 +221,21 @@ SimulatorRun run_foreign_motion(const ForeignProgram& program, const std::string
 }
 
 void require_held_ends(const Scene& scene, const Shape& aligned, bool has_arc_lengths) {
-  for (const bool at_start : {true, false}) require_end(scene, aligned, has_arc_lengths, at_start);
+  constexpr double share = 0.01;
+  for (const bool at_start : {true, false}) {
+    const double end = at_start ? 0 : scene.length;
+    const double outermost = at_start ? aligned.arc_length.front() : aligned.arc_length.back();
+    const double allowed = share * scene.length + (has_arc_lengths ? std::abs(end - outermost) : 0);
+    const Eigen::Vector3d point = aligned.points.col(at_start ? 0 : aligned.points.cols() - 1);
+    for (const Gripper& gripper : scene.grippers) {
+      const double distance = (point - gripper.position).norm();
+      if (gripper.at != end || distance <= allowed) continue;
+      throw InputError(
+          fmt::format("wrong end: the shape is {:.3g} m from the gripper at s = {:g} m (allowed: "
+                      "{:.3g} m)",
+                      distance, end, allowed));
+    }
+  }
 }
 
 Deviation foreign_deviation(const Scene& scene, const MeasuredShape& shape,
