@@ -63,14 +63,6 @@ SimulationStart simulation_start(const Scene& scene, const ForceModelSettings& s
   return {std::move(lowest.rod), std::move(points), std::move(lowest.result.points)};
 }
 
-/// Whether a simulation has come to rest farther from the chain's shape than the difference between
-/// the two laws explains.
-bool came_to_other_equilibrium(const Scene& scene, const Discretisation& discretisation,
-                               const Eigen::Matrix3Xd& points, const Eigen::Matrix3Xd& rest) {
-  constexpr double least_difference = 0.01;
-  return rms(discretisation.arc_length, points - rest) > least_difference * scene.length;
-}
-
 using Simulate = std::function<force_model::Simulation(const force_model::Rod& rod,
                                                        const Eigen::Matrix3Xd& points)>;
 
@@ -156,25 +148,21 @@ std::optional<RelaxedRod> relax_under_drag(const DragProblem& dragged, double sh
 
 /// Continues the shape at rest without drag to the one under the full drag, by growing shares of
 /// the drag.
+/// @param points  shape at rest without drag [m]
 /// @throws ConvergenceError if the share cannot grow to 1
-RelaxedRod continue_to_full_drag(const Scene& scene, const std::vector<double>& arc_length,
-                                 const force_model::Simulation& unloaded,
-                                 const force_model::RelaxOptions& limits,
-                                 const Simulate& simulate) {
+RelaxedRod continue_to_full_drag(const DragProblem& dragged, Eigen::Matrix3Xd points) {
   constexpr double first_share = 0.25;
   constexpr double least_share = 0.02;  // a shorter step of the share ends the continuation
   constexpr double partial_tolerance =
       1e-3;  // tolerance before the full drag, divided by the length
-  const double final_tolerance = 10 * limits.tolerance;
-  const DragProblem dragged{scene, arc_length, unloaded.rod(), limits, simulate};
-  Eigen::Matrix3Xd points = unloaded.points();
+  const double final_tolerance = 10 * dragged.limits.tolerance;
   double reached = 0;
   long steps = 0;
   for (double step = first_share; step > least_share;) {
     const double share = std::min(1.0, reached + step);
-    std::optional<RelaxedRod> rest =
-        relax_under_drag(dragged, share, points,
-                         (share < 1 ? partial_tolerance : final_tolerance) * scene.length, steps);
+    std::optional<RelaxedRod> rest = relax_under_drag(
+        dragged, share, points,
+        (share < 1 ? partial_tolerance : final_tolerance) * dragged.scene.length, steps);
     if (!rest) {
       step /= 2;
       continue;
@@ -192,7 +180,7 @@ RelaxedRod continue_to_full_drag(const Scene& scene, const std::vector<double>& 
   throw ConvergenceError(
       fmt::format("{}: the force model did not come to rest under more than {:.2g} of the drag "
                   "(--model exact may do)",
-                  scene.file, reached));
+                  dragged.scene.file, reached));
 }
 
 std::string not_at_rest_message(const Scene& scene, const ForceModelSettings& settings,
@@ -241,25 +229,26 @@ Solution solve_force(const Scene& scene, const ForceModelSettings& settings,
       throw InputError(fmt::format("{}: the force model: {}", dead_scene.file, error.what()));
     }
   };
-  const auto simulation_from = [&](const Eigen::Matrix3Xd& points) {
-    return simulate(start.rod, points);
-  };
   const force_model::RelaxOptions limits{.tolerance = options.rest_tolerance,
                                          .max_steps = options.max_steps,
                                          .time_limit = options.time_limit,
                                          .interrupted = energy_model::interrupted};
-  RelaxedRod rest{simulation_from(start.points), {}};
+  RelaxedRod rest{simulate(start.rod, start.points), {}};
   rest.result = rest.simulation.relax(limits);
+  // The simulation may come to rest farther from the chain's shape than the difference between the
+  // two laws explains.
   const auto has_switched = [&] {
+    constexpr double least_difference = 0.01;
     return rest.result.status == force_model::RelaxStatus::at_rest && start.rest &&
-           came_to_other_equilibrium(dead_scene, discretisation, rest.simulation.points(),
-                                     *start.rest);
+           rms(discretisation.arc_length, rest.simulation.points() - *start.rest) >
+               least_difference * scene.length;
   };
   if (has_switched()) {
     // The simulation went past the chain's equilibrium. It does not if it starts nine tenths of the
     // way to it.
     const long steps = rest.result.steps;
-    rest.simulation = simulation_from(start.points + start_fraction * (*start.rest - start.points));
+    rest.simulation =
+        simulate(start.rod, start.points + start_fraction * (*start.rest - start.points));
     rest.result = rest.simulation.relax(limits);
     rest.result.steps += steps;
   }
@@ -269,8 +258,9 @@ Solution solve_force(const Scene& scene, const ForceModelSettings& settings,
   const Eigen::Matrix3Xd dead_loads = rest.simulation.rod().loads;
   if (is_dragged) {
     const long steps = rest.result.steps;
-    rest =
-        continue_to_full_drag(scene, discretisation.arc_length, rest.simulation, limits, simulate);
+    rest = continue_to_full_drag(
+        {scene, discretisation.arc_length, rest.simulation.rod(), limits, simulate},
+        rest.simulation.points());
     rest.result.steps += steps;
   }
   require_unstrained(dead_scene, settings, discretisation, rest.simulation.points(), "force");

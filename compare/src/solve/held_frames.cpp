@@ -26,6 +26,38 @@ Eigen::Vector3d rolled_d1(const energy_model::Problem& problem, const energy_mod
   return Eigen::AngleAxisd(clamp.frame->roll, axis) * energy_model::held_d1(problem, clamp);
 }
 
+/// Returns the difference between the turns that the grips hold and those of a shape, an integer.
+/// Each passage of the rod through itself changes it by two.
+double missing_turns(const Linking& part) {
+  return std::round(part.held - part.twist - part.writhe);
+}
+
+std::string missing_turns_message(const Linking& part) {
+  const bool odd = std::fmod(missing_turns(part), 2) != 0;
+  return formatted(
+      "not verified: the grips hold {:.3f} turns from s = {:g} to {:g} m and the shape has "
+      "{:.3f} (twist {:.3f}, writhe {:.3f}): {}",
+      part.held, part.begin, part.end, part.twist + part.writhe, part.twist, part.writhe,
+      odd ? "its frames are a path of the other homotopy class" : "it has passed through itself");
+}
+
+/// Returns the axis of the shortest rotation between the directions of the clamps at the ends of a
+/// part.
+Eigen::Vector3d shortest_axis(const Scene& scene, const Linking& part) {
+  std::array<Eigen::Vector3d, 2> ends = {Eigen::Vector3d::Zero(), Eigen::Vector3d::Zero()};
+  for (const Gripper& gripper : scene.grippers) {
+    if (gripper.at == part.begin) ends[0] = gripper.direction.value_or(ends[0]);
+    if (gripper.at == part.end) ends[1] = gripper.direction.value_or(ends[1]);
+  }
+  return ends[0].cross(ends[1]);
+}
+
+/// Whether the directions of a part's clamps are opposite at some time between two scenes: the axis
+/// of the shortest rotation then reverses.
+bool directions_become_opposite(const Scene& before, const Scene& after, const Linking& part) {
+  return shortest_axis(before, part).dot(shortest_axis(after, part)) < 0;
+}
+
 }  // namespace
 
 std::vector<std::size_t> framed_grippers(const Scene& scene) {
@@ -104,42 +136,6 @@ void add_twisting_torques(const force_model::Rod& rod, const Eigen::Matrix3Xd& p
     }
   }
 }
-
-namespace {
-
-/// Returns the difference between the turns that the grips hold and those of a shape, an integer.
-/// Each passage of the rod through itself changes it by two.
-double missing_turns(const Linking& part) {
-  return std::round(part.held - part.twist - part.writhe);
-}
-
-std::string missing_turns_message(const Linking& part) {
-  const bool odd = std::fmod(missing_turns(part), 2) != 0;
-  return formatted(
-      "not verified: the grips hold {:.3f} turns from s = {:g} to {:g} m and the shape has "
-      "{:.3f} (twist {:.3f}, writhe {:.3f}): {}",
-      part.held, part.begin, part.end, part.twist + part.writhe, part.twist, part.writhe,
-      odd ? "its frames are a path of the other homotopy class" : "it has passed through itself");
-}
-
-/// Returns the axis of the shortest rotation between the directions of the clamps at the ends of a
-/// part.
-Eigen::Vector3d shortest_axis(const Scene& scene, const Linking& part) {
-  std::array<Eigen::Vector3d, 2> ends = {Eigen::Vector3d::Zero(), Eigen::Vector3d::Zero()};
-  for (const Gripper& gripper : scene.grippers) {
-    if (gripper.at == part.begin) ends[0] = gripper.direction.value_or(ends[0]);
-    if (gripper.at == part.end) ends[1] = gripper.direction.value_or(ends[1]);
-  }
-  return ends[0].cross(ends[1]);
-}
-
-/// Whether the directions of a part's clamps are opposite at some time between two scenes: the axis
-/// of the shortest rotation then reverses.
-bool directions_become_opposite(const Scene& before, const Scene& after, const Linking& part) {
-  return shortest_axis(before, part).dot(shortest_axis(after, part)) < 0;
-}
-
-}  // namespace
 
 std::vector<Linking> linking_of(const Scene& scene, const energy_model::Equilibrium& equilibrium) {
   std::vector<Linking> parts;

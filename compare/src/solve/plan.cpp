@@ -18,6 +18,7 @@
 #include "polygon/natural_plane.hpp"
 #include "polygon/polygon_response.hpp"
 #include "scene/scene_problem.hpp"
+#include "solve/held_frames.hpp"
 
 namespace dlo::compare {
 namespace {
@@ -53,17 +54,15 @@ std::vector<PlannedSpan> spans_of(const Scene& scene) {
 /// determine them.
 std::vector<PlannedTwist> twists_of(const Scene& scene) {
   std::vector<PlannedTwist> twists;
-  const Gripper* before = nullptr;
-  for (const Gripper* gripper : grippers_by_arc_length(scene)) {
-    if (!gripper->frame) continue;
-    if (before != nullptr) {
-      const bool by_directors = before->frame->d1 && gripper->frame->d1;
-      twists.push_back({.begin = before->at,
-                        .end = gripper->at,
-                        .turn = by_directors ? std::numeric_limits<double>::quiet_NaN()
-                                             : gripper->frame->roll - before->frame->roll});
-    }
-    before = gripper;
+  const std::vector<std::size_t> framed = framed_grippers(scene);
+  for (std::size_t k = 1; k < framed.size(); ++k) {
+    const Gripper& before = scene.grippers[framed[k - 1]];
+    const Gripper& after = scene.grippers[framed[k]];
+    const bool by_directors = before.frame->d1 && after.frame->d1;
+    twists.push_back({.begin = before.at,
+                      .end = after.at,
+                      .turn = by_directors ? std::numeric_limits<double>::quiet_NaN()
+                                           : after.frame->roll - before.frame->roll});
   }
   return twists;
 }
@@ -174,18 +173,15 @@ void set_neglect_effect(const Scene& without, const energy_model::Equilibrium& r
   item.why = "distance from the lowest shape without it";
 }
 
-/// Sets the twist that the rod takes up, for each part.
-void set_planned_twist(const energy_model::Equilibrium& rod, Plan& plan) {
-  if (rod.twists.size() != plan.twist.size()) return;
-  for (std::size_t i = 0; i < plan.twist.size(); ++i) plan.twist[i].twist = rod.twists[i].angle;
-}
-
-/// Bounds of neglected effects that follow from the shape of the rod.
+/// Neglected effects whose bounds follow from the shape of the rod.
 struct ShapeBounds {
   Neglected stretch{.name = "stretch", .models = "energy, exact, chain of rigid segments"};
   Neglected shear{.name = "shear", .models = "all"};
   Neglected polygon{.name = "polygon", .models = "chain, force"};
+  Neglected twist;
+  Neglected natural;
 
+  /// Sets the bounds that the response of a polygon would give.
   void set_unbounded(const std::string& why) {
     for (Neglected* item : {&stretch, &shear, &polygon}) {
       item->bound_m = unbounded;
@@ -215,16 +211,11 @@ Plan plan_of(const Scene& scene, double target) {
   return plan;
 }
 
-/// Whether EA follows from the scene: from axial_stiffness, or from a section.
-bool has_axial_stiffness(const Scene& scene) {
-  return scene.given_axial_stiffness.has_value() || scene.cross_section() > 0;
-}
-
 /// Sets the bounds of a rod without contact, by the response of a fine polygon.
 void bound_by_response(const Scene& scene, const energy_model::Equilibrium& rod,
                        const Discretisation& fine, ShapeBounds& bounds) {
   const PolygonResponse response(scene, fine, rod);
-  if (has_axial_stiffness(scene)) {
+  if (scene.given_axial_stiffness || scene.cross_section() > 0) {
     const double EA = scene.axial_stiffness();
     bounds.stretch.bound_m = bound_of_response(response.stretch(EA).displacement_m, scene.length);
     bounds.stretch.why = "response to the axial strain, tension over EA";
@@ -242,49 +233,35 @@ void bound_by_response(const Scene& scene, const energy_model::Equilibrium& rod,
                   to_string(scene.force_model.bookkeeping), scene.force_model.points);
 }
 
-/// Neglected effects that the shape of the rod determines.
-struct ShapeDependentItems {
-  ShapeBounds& bounds;
-  Neglected& twist;
-  Neglected& natural;
-};
-
-void bound_by_shape(const Scene& scene, const PlanOptions& options,
-                    const ShapeDependentItems& items, Plan& plan) {
+void bound_by_shape(const Scene& scene, const PlanOptions& options, ShapeBounds& bounds,
+                    Plan& plan) {
   const TimeLimit time(options.time_limit);
   std::string why;
   const std::optional<energy_model::Equilibrium> rod = rod_shape(scene, options.time_limit, why);
   plan.contact = !rod || touches_obstacle(*rod);
   if (rod && !plan.twist.empty()) {
-    set_planned_twist(*rod, plan);
-    set_neglect_effect(scene.without_twist(), *rod, time.left(), items.twist);
+    const bool has_all = rod->twists.size() == plan.twist.size();
+    for (std::size_t i = 0; has_all && i < plan.twist.size(); ++i) {
+      plan.twist[i].twist = rod->twists[i].angle;
+    }
+    set_neglect_effect(scene.without_twist(), *rod, time.left(), bounds.twist);
   }
   if (rod && scene.naturally_bent()) {
-    set_neglect_effect(scene.without_natural_strain(), *rod, time.left(), items.natural);
+    set_neglect_effect(scene.without_natural_strain(), *rod, time.left(), bounds.natural);
   }
   const std::optional<Discretisation> fine = hooke_polygon(scene, rod_points);
   if (!rod) {
-    items.bounds.set_unbounded(why);
+    bounds.set_unbounded(why);
   } else if (plan.contact) {
-    items.bounds.set_unbounded("the rod touches an obstacle");
+    bounds.set_unbounded("the rod touches an obstacle");
   } else if (const std::string none = why_no_polygon(scene); !none.empty()) {
-    items.bounds.set_unbounded(none);
+    bounds.set_unbounded(none);
   } else if (!fine) {
-    items.bounds.set_unbounded("the grips are closer than points of the finest polygon tried");
+    bounds.set_unbounded("the grips are closer than points of the finest polygon tried");
   } else {
-    bound_by_response(scene, *rod, *fine, items.bounds);
+    bound_by_response(scene, *rod, *fine, bounds);
     plan.points = points_for_target(scene, *rod, options.target, time);
   }
-}
-
-void note_obstacles_out_of_reach(Plan& plan) {
-  const auto all = plan.obstacles.size();
-  const auto out = static_cast<std::size_t>(
-      std::count_if(plan.obstacles.begin(), plan.obstacles.end(),
-                    [](const PlannedObstacle& obstacle) { return !obstacle.in_reach; }));
-  if (out == 0) return;
-  plan.neglected.push_back({"obstacles out of reach", "all", 0,
-                            fmt::format("{} of {}: no point of the rod gets there", out, all)});
 }
 
 }  // namespace
@@ -307,10 +284,10 @@ Plan make_plan(const Scene& scene, const PlanOptions& options) {
   inextensible.stretch = Stretch::none;
   Plan plan = plan_of(inextensible, options.target);
   ShapeBounds bounds;
-  Neglected twist = neglected_twist(inextensible, plan);
-  Neglected natural = neglected_natural(inextensible);
+  bounds.twist = neglected_twist(inextensible, plan);
+  bounds.natural = neglected_natural(inextensible);
   try {
-    bound_by_shape(inextensible, options, {bounds, twist, natural}, plan);
+    bound_by_shape(inextensible, options, bounds, plan);
   } catch (const std::exception& error) {
     // A failing plan must not make a solve fail.
     bounds.set_unbounded(fmt::format("not computed: {}", error.what()));
@@ -318,12 +295,18 @@ Plan make_plan(const Scene& scene, const PlanOptions& options) {
   const bool counted = scene.stretch == Stretch::counted;
   plan.stretch = !counted && bounds.stretch.bound_m > options.target * inextensible.length / 10;
   plan.neglected = {bounds.shear, bounds.polygon, inertia(inextensible, options.gripper_speed),
-                    twist};
+                    bounds.twist};
   if (!counted) plan.neglected.insert(plan.neglected.begin(), bounds.stretch);
-  if (inextensible.naturally_bent()) plan.neglected.push_back(natural);
+  if (inextensible.naturally_bent()) plan.neglected.push_back(bounds.natural);
   if (is_friction_in_reach(inextensible)) plan.neglected.push_back(neglected_friction(plan));
   plan.moving = plan.bound("inertia") > options.target * inextensible.length;
-  note_obstacles_out_of_reach(plan);
+  const auto all = plan.obstacles.size();
+  const auto out = static_cast<std::size_t>(
+      std::ranges::count(plan.obstacles, false, &PlannedObstacle::in_reach));
+  if (out > 0) {
+    plan.neglected.push_back({"obstacles out of reach", "all", 0,
+                              fmt::format("{} of {}: no point of the rod gets there", out, all)});
+  }
   return plan;
 }
 

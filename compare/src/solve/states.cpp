@@ -26,6 +26,14 @@ double shapes_apart(const Scene& scene, const Equilibrium& a, const Equilibrium&
   return rms(s, a.sample(s).points - b.sample(s).points);
 }
 
+/// Returns the state that has the shape of another one; the end if there is none.
+std::vector<Equilibrium>::iterator find_same(const Scene& scene, std::vector<Equilibrium>& states,
+                                             const Equilibrium& state) {
+  return std::ranges::find_if(states, [&](const Equilibrium& other) {
+    return shapes_apart(scene, state, other) < same_shape_tolerance * scene.length;
+  });
+}
+
 /// Returns d1 of the mirror image of a material frame (d1, d2 = t x d1). The image keeps the
 /// direction of d1 at the first clamp. With d1 = a n + b t x n there, e = a d1 - b d2 is the
 /// material direction of the normal n, and p = b d1 + a d2 is the other one. A right-handed image
@@ -102,13 +110,8 @@ std::vector<Equilibrium> all_equilibria(const Scene& scene, const Equilibrium& l
   } catch (const ConvergenceError&) {
     // The lowest one is known even if the search fails.
   }
-  const auto find = [&](const Equilibrium& state) {
-    return std::find_if(states.begin(), states.end(), [&](const Equilibrium& other) {
-      return shapes_apart(scene, state, other) < same_shape_tolerance * scene.length;
-    });
-  };
   // `lowest` replaces the state found again, because solve() computed it with all digits.
-  const auto found_too = find(lowest);
+  const auto found_too = find_same(scene, states, lowest);
   if (found_too != states.end()) {
     *found_too = lowest;
   } else {
@@ -118,7 +121,7 @@ std::vector<Equilibrium> all_equilibria(const Scene& scene, const Equilibrium& l
     const std::size_t found = states.size();
     for (std::size_t i = 0; i < found; ++i) {
       Equilibrium image = mirrored(scene, states[i], *normal);
-      if (find(image) == states.end()) states.push_back(std::move(image));
+      if (find_same(scene, states, image) == states.end()) states.push_back(std::move(image));
     }
   }
   std::stable_sort(states.begin(), states.end(), precedes);
@@ -134,10 +137,7 @@ std::optional<Equilibrium> equilibrium_near(const Scene& scene, const Shape& sha
 std::optional<std::size_t> insert_equilibrium(const Scene& scene, Equilibrium state,
                                               std::vector<Equilibrium>& states) {
   if (!succeeded(state.status)) return std::nullopt;
-  const bool known = std::any_of(states.begin(), states.end(), [&](const Equilibrium& other) {
-    return shapes_apart(scene, state, other) < same_shape_tolerance * scene.length;
-  });
-  if (known) return std::nullopt;
+  if (find_same(scene, states, state) != states.end()) return std::nullopt;
   const auto at = std::upper_bound(states.begin(), states.end(), state, precedes);
   const auto index = static_cast<std::size_t>(at - states.begin());
   states.insert(at, std::move(state));

@@ -71,9 +71,7 @@ void estimate_by_longer_rod(const Scene& scene, const Solution& solution, double
         rms(solution.shape.arc_length, other.shape.points - solution.shape.points);
     const double before = largest_magnitude(solution.tension);
     effect.tension = largest_magnitude(other.tension) / before - 1;
-  } catch (const ConvergenceError&) {
-    // The effect remains unknown.
-  } catch (const InputError&) {
+  } catch (const ResultError&) {
     // The effect remains unknown.
   }
 }
@@ -90,19 +88,11 @@ bool stretch_matters(const StretchEffect& effect, const Scene& scene, const Solv
          std::abs(effect.tension) > options.target;
 }
 
-/// Returns the shape with stretch, std::nullopt if the exact model rejects the scene with stretch,
-/// as next to obstacles.
-std::optional<energy_model::Equilibrium> exact_with_stretch(const Scene& scene,
-                                                            const SolveOptions& options) {
-  try {
-    return solve_reference(scene, Model::exact, options);
-  } catch (const InputError&) {
-    return std::nullopt;
-  }
-}
-
-}  // namespace
-
+/// Estimates what stretch would change of an equilibrium of `energy` or `exact`: by
+/// PolygonResponse, or, where that does not apply, as for a rod that touches an obstacle, by the
+/// energy model's shape of a rod that is longer by the mean strain. The estimate is omitted if
+/// strain (1 + 1 / slack) does not exceed the target, because away from a bifurcation the effect is
+/// smaller than this product. It is also omitted if EA is unknown or grips hold the rod taut.
 StretchEffect stretch_effect(const Scene& scene, Model model, const energy_model::Equilibrium& rod,
                              const SolveOptions& options) {
   StretchEffect effect;
@@ -135,6 +125,8 @@ StretchEffect stretch_effect(const Scene& scene, Model model, const energy_model
   }
   return effect;
 }
+
+}  // namespace
 
 StretchedRod with_stretch_effect(const Scene& scene, Model model,
                                  const energy_model::Equilibrium& rod,
@@ -170,12 +162,14 @@ StretchedRod decide_stretch(const Scene& scene, Model model, const SolveOptions&
   StretchedRod result =
       with_stretch_effect(scene, model, solve_reference(rigid, model, options), options);
   if (!may_include_stretch || !result.neglects_stretch) return result;
-  if (std::optional<energy_model::Equilibrium> rod = exact_with_stretch(stretched, options)) {
-    result.scene = stretched;
-    result.rod = *std::move(rod);
-    result.neglects_stretch = false;
-    result.decision = StretchDecision::counted;
+  try {
+    result.rod = solve_reference(stretched, model, options);
+  } catch (const InputError&) {
+    return result;  // the model rejects the scene with stretch, as next to obstacles
   }
+  result.scene = stretched;
+  result.neglects_stretch = false;
+  result.decision = StretchDecision::counted;
   return result;
 }
 

@@ -6,15 +6,6 @@
 
 namespace dlo::compare {
 
-/// Estimates what stretch would change of an equilibrium of `energy` or `exact`: by
-/// PolygonResponse, or, where that does not apply, as for a rod that touches an obstacle, by the
-/// energy model's shape of a rod that is longer by the mean strain. The estimate is omitted if
-/// strain (1 + 1 / slack) does not exceed the target, because away from a bifurcation the effect is
-/// smaller than this product. It is also omitted if EA is unknown or grips hold the rod taut.
-[[nodiscard]] StretchEffect stretch_effect(const Scene& scene, Model model,
-                                           const energy_model::Equilibrium& rod,
-                                           const SolveOptions& options);
-
 /// An equilibrium of `energy` or `exact`, and the effect of stretch on it.
 struct StretchedRod {
   Scene scene;  ///< scene that was solved: Stretch::none or Stretch::counted
