@@ -119,10 +119,8 @@ class FollowedState {
       const double deviation = rms(s_, state.sample(s_).points - start.points);
       if (!(deviation <= largest_deviation * scene_.length)) return nullptr;
       return &remember(log_ratio, std::move(state));
-    } catch (const ConvergenceError&) {
-      return nullptr;
-    } catch (const InputError&) {
-      return nullptr;  // softer or stiffer than the energy model supports
+    } catch (const ResultError&) {
+      return nullptr;  // not converged, or softer or stiffer than the energy model supports
     }
   }
 

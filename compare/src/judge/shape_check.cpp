@@ -144,29 +144,6 @@ std::string hint_of(const ShapeCheck& check, const Measured& measured) {
   return {};
 }
 
-void add_worst_point(const MeasuredShape& shape, const Measured& measured, ShapeCheck& check) {
-  const Alignment& alignment = check.alignment;
-  const Eigen::Index worst = measured.worst;
-  check.worst_position = alignment.shape.points.col(worst);
-  const bool file_falls = alignment.arc_lengths == ArcLengths::file &&
-                          shape.arc_length.front() > shape.arc_length.back();
-  const bool backwards = alignment.reversed != file_falls;
-  check.worst_point = 1 + (backwards ? shape.points.cols() - 1 - worst : worst);
-}
-
-/// Computes which part of the rod the points show.
-/// @param s  arc lengths of the points
-void add_seen_part(const MeasuredShape& shape, const std::vector<double>& s, double length,
-                   ShapeCheck& check) {
-  for (std::size_t i = 0; i + 1 < s.size(); ++i) {
-    if (!(s[i + 1] - s[i] > check.largest_gap_m)) continue;
-    check.largest_gap_m = s[i + 1] - s[i];
-    check.largest_gap_at_m = s[i];
-  }
-  check.polyline_length_m = polyline_length(shape.points);
-  check.observed_share = (s.back() - s.front()) / length;
-}
-
 AlignOptions align_options(const Scene& scene, const ShapeCheckOptions& options) {
   return {.pose = options.pose,
           .arc_lengths = options.arc_lengths,
@@ -198,8 +175,18 @@ ShapeCheck compared(const Scene& scene, const MeasuredShape& shape, Alignment al
   result.whole_rod_rms_m = whole.rms_m;
   result.whole_rod_max_m = whole.max_m;
 
-  add_worst_point(shape, measured, result);
-  add_seen_part(shape, s, scene.length, result);
+  result.worst_position = alignment.shape.points.col(measured.worst);
+  const bool file_falls = alignment.arc_lengths == ArcLengths::file &&
+                          shape.arc_length.front() > shape.arc_length.back();
+  const bool backwards = alignment.reversed != file_falls;
+  result.worst_point = 1 + (backwards ? shape.points.cols() - 1 - measured.worst : measured.worst);
+  for (std::size_t i = 0; i + 1 < s.size(); ++i) {
+    if (!(s[i + 1] - s[i] > result.largest_gap_m)) continue;
+    result.largest_gap_m = s[i + 1] - s[i];
+    result.largest_gap_at_m = s[i];
+  }
+  result.polyline_length_m = polyline_length(shape.points);
+  result.observed_share = (s.back() - s.front()) / scene.length;
   result.measured_points = measured_points(scene, alignment.shape.points);
   result.hint = hint_of(result, measured);
   result.is_direction_determined = alignment.opposite_direction_rms_m > 1.05 * alignment.rms_m;
