@@ -207,9 +207,7 @@ std::vector<SweepCell> Sweep::results(std::int64_t row) const {
     throw;
   } catch (const std::system_error&) {
     throw;  // no threads available: a failure of the machine, not of the scene
-  } catch (const InputError& error) {
-    return cells_with_status(error.what());
-  } catch (const ConvergenceError& error) {
+  } catch (const ResultError& error) {
     return cells_with_status(error.what());
   } catch (const std::invalid_argument& error) {
     return cells_with_status(error.what());

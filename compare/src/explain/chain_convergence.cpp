@@ -101,12 +101,6 @@ double distance_from(const Shape& chain, const energy_model::Equilibrium& rod, b
   return largest ? std::sqrt(gaps.colwise().squaredNorm().maxCoeff()) : rms(chain.arc_length, gaps);
 }
 
-int expected_order(const Scene& scene, ChainClamp clamp) {
-  const bool is_clamped = std::ranges::any_of(
-      scene.grippers, [](const Gripper& gripper) { return gripper.direction.has_value(); });
-  return is_clamped && clamp != ChainClamp::middle ? 1 : 2;
-}
-
 /// Whether the distance [m] is within the bound of make_plan() for a polygon with the chain's
 /// points, if clamps hold the middles of its segments and the rod touches nothing.
 bool is_within_bound(const Scene& scene, const CandidateChain& chain,
@@ -188,7 +182,9 @@ ShapeJudgement with_explanation(ShapeJudgement judgement,
 ChainConvergence chain_convergence(const Scene& scene, const CandidateChain& chain,
                                    const energy_model::Equilibrium& rod, bool largest) {
   ChainConvergence result;
-  result.order = expected_order(scene, chain.clamp);
+  const bool is_clamped = std::ranges::any_of(
+      scene.grippers, [](const Gripper& gripper) { return gripper.direction.has_value(); });
+  result.order = is_clamped && chain.clamp != ChainClamp::middle ? 1 : 2;
   result.coarse_m = distance_from(chain.rest, rod, largest);
   result.fine_m = std::numeric_limits<double>::quiet_NaN();
   double finest_m = result.fine_m;
