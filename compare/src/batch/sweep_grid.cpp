@@ -8,6 +8,7 @@
 #include <string_view>
 
 #include "base/number.hpp"
+#include "base/text.hpp"
 #include "dlo/compare/error.hpp"
 
 namespace dlo::compare {
@@ -21,12 +22,6 @@ struct NumberWithUnit {
   std::string unit;
 };
 
-std::string_view without_spaces(std::string_view text) {
-  const std::size_t begin = text.find_first_not_of(' ');
-  if (begin == std::string_view::npos) return {};
-  return text.substr(begin, text.find_last_not_of(' ') - begin + 1);
-}
-
 /// Splits a text into a finite number and its unit, which is all that follows the number. Returns
 /// std::nullopt if the text does not begin with a finite number. The scene's reader judges the
 /// unit.
@@ -36,7 +31,7 @@ std::optional<NumberWithUnit> split_number(std::string_view text) {
   NumberWithUnit result;
   result.number = number;
   result.digits = text.substr(0, length);
-  result.unit = without_spaces(text.substr(length));
+  result.unit = trimmed(text.substr(length));
   return result;
 }
 
@@ -49,7 +44,7 @@ std::vector<std::string> split_values(std::string_view text, char separator) {
     if (i < text.size() && text[i] == '[') ++depth;
     if (i < text.size() && text[i] == ']') --depth;
     if (i < text.size() && (text[i] != separator || depth > 0)) continue;
-    parts.emplace_back(without_spaces(text.substr(begin, i - begin)));
+    parts.emplace_back(trimmed(text.substr(begin, i - begin)));
     begin = i + 1;
   }
   return parts;
@@ -138,7 +133,7 @@ Axis parse_axis(const std::string& text) {
     refuse_axis(text, "has a control character");
   }
   Axis axis;
-  axis.field = without_spaces(std::string_view(text).substr(0, equals));
+  axis.field = trimmed(std::string_view(text).substr(0, equals));
   if (axis.field.empty()) refuse_axis(text, "has no field");
   const std::string values = text.substr(equals + 1);
   const std::vector<std::string> range = split_values(values, ':');

@@ -5,17 +5,12 @@
 #include <algorithm>
 
 #include "base/input_file.hpp"
+#include "base/text.hpp"
 
 namespace dlo::compare {
 namespace {
 
 constexpr char any_blanks = '\0';
-
-std::string_view trimmed(std::string_view text, std::string_view trimmed_characters) {
-  const std::size_t start = text.find_first_not_of(trimmed_characters);
-  if (start == std::string_view::npos) return {};
-  return text.substr(start, text.find_last_not_of(trimmed_characters) - start + 1);
-}
 
 char separator_of(std::string_view line) {
   for (const char separator : {',', ';', '\t'}) {

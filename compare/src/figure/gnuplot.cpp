@@ -33,9 +33,7 @@ std::string text_of(const std::filesystem::path& file) {
 std::string joined_lines(std::string text) {
   std::replace_if(
       text.begin(), text.end(), [](unsigned char c) { return c < ' '; }, ' ');
-  const std::size_t first = text.find_first_not_of(' ');
-  if (first == std::string::npos) return {};
-  return text.substr(first, text.find_last_not_of(' ') - first + 1);
+  return std::string(trimmed(text));
 }
 
 }  // namespace

@@ -10,6 +10,7 @@
 
 #include "base/builtin_data.hpp"
 #include "base/number.hpp"
+#include "base/text.hpp"
 
 namespace dlo::compare {
 namespace {
@@ -21,11 +22,7 @@ std::vector<std::string> parts_of(std::string_view text, char separator) {
   std::vector<std::string> parts;
   while (true) {
     const std::size_t end = text.find(separator);
-    const std::string_view part = text.substr(0, end);
-    const std::size_t first = part.find_first_not_of(' ');
-    parts.emplace_back(first == std::string_view::npos
-                           ? std::string_view()
-                           : part.substr(first, part.find_last_not_of(' ') + 1 - first));
+    parts.emplace_back(trimmed(text.substr(0, end)));
     if (end == std::string_view::npos) return parts;
     text.remove_prefix(end + 1);
   }
