@@ -172,7 +172,8 @@ void add_polygon(const Scene& scene, const ForceModelSettings& settings, Json& r
   result["c_h"] = settings.stepper == Stepper::dynamic ? Json(steps.c_h) : Json();
   result["l_s_m"] = steps.l_s > 0 ? Json(steps.l_s) : Json();
   result["point_at_m"] = polygon.arc_length;
-  result["point_mass_kg"] = point_masses(scene, settings).rod;
+  const Eigen::VectorXd masses = point_masses(scene, settings).rod;
+  result["point_mass_kg"] = std::vector<double>(masses.begin(), masses.end());
   result["point_force_N"] = points_json(rod.loads);
   result["segment_m"] = std::vector<double>(rod.rest_lengths.begin(), rod.rest_lengths.end());
   result["joint_stiffness_Nm"] = joints_document(rod);

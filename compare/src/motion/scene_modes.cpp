@@ -141,11 +141,7 @@ MovingPolygon polygon_at_rest(const Scene& scene, const SolveOptions& options) {
   result.stiffness = std::move(K.entries);
   result.free = std::move(K.points);
   const PointMasses masses = point_masses(scene, settings);
-  result.masses.resize(static_cast<Eigen::Index>(result.free.size()));
-  for (Eigen::Index i = 0; i < result.masses.size(); ++i) {
-    const auto point = static_cast<std::size_t>(result.free[static_cast<std::size_t>(i)]);
-    result.masses[i] = masses.rod[point] + masses.hanging[point];
-  }
+  result.masses = (masses.rod + masses.hanging)(result.free);
   return result;
 }
 

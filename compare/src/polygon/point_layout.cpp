@@ -202,11 +202,10 @@ void choose_time_step(const Discretisation& discretisation, force_model::StepOpt
 /// @throws InputError naming file, line and key if two hold one arc length, or are further apart
 /// than the rod between them
 std::vector<std::size_t> order_along(const Scene& scene) {
-  std::vector<std::size_t> along(scene.grippers.size());
-  for (std::size_t i = 0; i < along.size(); ++i) along[i] = i;
-  std::stable_sort(along.begin(), along.end(), [&](std::size_t a, std::size_t b) {
-    return scene.grippers[a].at < scene.grippers[b].at;
-  });
+  std::vector<std::size_t> along;
+  for (const Gripper* gripper : grippers_by_arc_length(scene)) {
+    along.push_back(static_cast<std::size_t>(gripper - scene.grippers.data()));
+  }
   for (std::size_t i = 0; i + 1 < along.size(); ++i) {
     const Gripper& a = scene.grippers[along[i]];
     const Gripper& b = scene.grippers[along[i + 1]];
@@ -334,12 +333,7 @@ PointMasses point_masses(const Scene& scene, const ForceModelSettings& settings)
   for (PointLoad& load : weighed.loads) load.force = load.mass * weighed.gravity;
   weighed.distributed_loads.clear();
   const Discretisation polygon = discretise(weighed, settings);
-  PointMasses masses;
-  for (Eigen::Index i = 0; i < polygon.weights.cols(); ++i) {
-    masses.rod.push_back(-polygon.weights(1, i));
-    masses.hanging.push_back(polygon.weights(1, i) - polygon.rod.loads(1, i));
-  }
-  return masses;
+  return {-polygon.weights.row(1), polygon.weights.row(1) - polygon.rod.loads.row(1)};
 }
 
 force_model::StepOptions step_options(const ForceModelSettings& settings,
@@ -364,11 +358,7 @@ void set_masses(const Scene& scene, const ForceModelSettings& settings,
                 Discretisation& discretisation) {
   if (settings.stepper != Stepper::verlet) return;
   const PointMasses masses = point_masses(scene, settings);
-  force_model::Rod& rod = discretisation.rod;
-  rod.masses.resize(rod.points());
-  for (std::size_t i = 0; i < masses.rod.size(); ++i) {
-    rod.masses[static_cast<Eigen::Index>(i)] = masses.rod[i] + masses.hanging[i];
-  }
+  discretisation.rod.masses = masses.rod + masses.hanging;
 }
 
 }  // namespace dlo::compare

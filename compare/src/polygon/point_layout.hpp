@@ -45,8 +45,8 @@ void require_feasible_grips(const Scene& scene, const ForceModelSettings& settin
 
 /// Masses of the points of a scene's polygon, by point [kg].
 struct PointMasses {
-  std::vector<double> rod;      ///< mass of the rod
-  std::vector<double> hanging;  ///< mass hanging on it (PointLoad::mass), by the lever rule
+  Eigen::VectorXd rod;      ///< mass of the rod
+  Eigen::VectorXd hanging;  ///< mass hanging on it (PointLoad::mass), by the lever rule
 };
 
 /// Returns the masses of the points. @throws InputError in the cases of discretise()
