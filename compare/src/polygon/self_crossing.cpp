@@ -16,16 +16,20 @@ constexpr double least_crossing_distance = 3;
 /// apart.
 constexpr double coordinate_rounding = 1e-12;
 
-/// Positions of the nearest points of two segments, as fractions of the segments (Ericson,
-/// Real-Time Collision Detection, 2005, section 5.1.9).
-struct Nearest {
-  double along_a = 0;
-  double along_b = 0;
-};
+/// Returns the arc length at a fraction of a segment.
+double arc_length_on(const Shape& shape, Eigen::Index segment, double share) {
+  const auto k = static_cast<std::size_t>(segment);
+  return shape.arc_length[k] + share * (shape.arc_length[k + 1] - shape.arc_length[k]);
+}
 
-Nearest nearest_of(const Eigen::Vector3d& a, const Eigen::Vector3d& along_a,
-                   const Eigen::Vector3d& b, const Eigen::Vector3d& along_b) {
+/// Returns the nearest points of two segments (Ericson, Real-Time Collision Detection, 2005,
+/// section 5.1.9).
+SelfCrossing crossing_of(const Shape& shape, Eigen::Index i, Eigen::Index j) {
   const auto share = [](double value) { return std::clamp(value, 0.0, 1.0); };
+  const Eigen::Vector3d a = shape.points.col(i);
+  const Eigen::Vector3d b = shape.points.col(j);
+  const Eigen::Vector3d along_a = shape.points.col(i + 1) - a;
+  const Eigen::Vector3d along_b = shape.points.col(j + 1) - b;
   const Eigen::Vector3d from_b = a - b;
   const double aa = along_a.squaredNorm();
   const double bb = along_b.squaredNorm();
@@ -33,28 +37,11 @@ Nearest nearest_of(const Eigen::Vector3d& a, const Eigen::Vector3d& along_a,
   const double apart_a = along_a.dot(from_b);
   const double apart_b = along_b.dot(from_b);
   const double across = aa * bb - ab * ab;
-  Nearest result;
-  if (across > 0) result.along_a = share((ab * apart_b - apart_a * bb) / across);
-  result.along_b = share((ab * result.along_a + apart_b) / bb);
-  result.along_a = share((ab * result.along_b - apart_a) / aa);
-  return result;
-}
-
-/// Returns the arc length at a fraction of a segment.
-double arc_length_on(const Shape& shape, Eigen::Index segment, double share) {
-  const auto k = static_cast<std::size_t>(segment);
-  return shape.arc_length[k] + share * (shape.arc_length[k + 1] - shape.arc_length[k]);
-}
-
-/// Returns the nearest points of two segments.
-SelfCrossing crossing_of(const Shape& shape, Eigen::Index i, Eigen::Index j) {
-  const Eigen::Vector3d a = shape.points.col(i);
-  const Eigen::Vector3d b = shape.points.col(j);
-  const Eigen::Vector3d along_a = shape.points.col(i + 1) - a;
-  const Eigen::Vector3d along_b = shape.points.col(j + 1) - b;
-  const Nearest at = nearest_of(a, along_a, b, along_b);
-  return {arc_length_on(shape, i, at.along_a), arc_length_on(shape, j, at.along_b),
-          (a + at.along_a * along_a - b - at.along_b * along_b).norm()};
+  double at_a = across > 0 ? share((ab * apart_b - apart_a * bb) / across) : 0;
+  const double at_b = share((ab * at_a + apart_b) / bb);
+  at_a = share((ab * at_b - apart_a) / aa);
+  return {arc_length_on(shape, i, at_a), arc_length_on(shape, j, at_b),
+          (a + at_a * along_a - b - at_b * along_b).norm()};
 }
 
 }  // namespace

@@ -80,7 +80,7 @@ class Arch {
     up_ = up_.norm() > 0 ? up_.normalized() : any_across(axis_);
     if (side == Side::against_load) up_ = -up_;
     lean_ = lean * rod * axis_.cross(up_);
-    if (length() > rod) {
+    if (lengths_along().back() > rod) {
       solve(slope_, slope_, rod);
     } else {
       solve(height_, 2 * rod, rod);
@@ -89,15 +89,10 @@ class Arch {
 
   /// Returns the points at the given fractions of the curve's length.
   [[nodiscard]] Eigen::Matrix3Xd at(const std::vector<double>& shares) const {
-    std::vector<double> lengths(curve_points + 1, 0);
-    double total = 0;
-    for (std::size_t i = 0; i < curve_points; ++i) {
-      total += (point(static_cast<double>(i + 1)) - point(static_cast<double>(i))).norm();
-      lengths[i + 1] = total;
-    }
+    const std::vector<double> lengths = lengths_along();
     Eigen::Matrix3Xd result(3, static_cast<Eigen::Index>(shares.size()));
     for (std::size_t k = 0; k < shares.size(); ++k) {
-      const double wanted = shares[k] * total;
+      const double wanted = shares[k] * lengths.back();
       const auto above = std::upper_bound(lengths.begin() + 1, lengths.end() - 1, wanted);
       const double part = (wanted - *(above - 1)) / (*above - *(above - 1));
       const double i = static_cast<double>(above - 1 - lengths.begin());
@@ -118,15 +113,16 @@ class Arch {
            bump * (height_ * up_ + lean_) - width * bump * (w - u) * axis_;
   }
 
-  [[nodiscard]] double length() const {
-    double sum = 0;
+  /// Returns the length of the curve up to each of its points.
+  [[nodiscard]] std::vector<double> lengths_along() const {
+    std::vector<double> lengths = {0};
     Eigen::Vector3d last = point(0);
     for (int i = 1; i <= curve_points; ++i) {
       const Eigen::Vector3d next = point(i);
-      sum += (next - last).norm();
+      lengths.push_back(lengths.back() + (next - last).norm());
       last = next;
     }
-    return sum;
+    return lengths;
   }
 
   /// Sets one parameter of the curve, between 0 and `most`, so that the curve has the length of the
@@ -135,7 +131,7 @@ class Arch {
     constexpr double rounding = 1e-15;
     const Function length_at = [&](double value) {
       number = value;
-      return length();
+      return lengths_along().back();
     };
     number = length_at(0) < rod ? find_crossing(length_at, 0, most, rod, rounding * most) : 0;
   }
