@@ -196,9 +196,10 @@ Model answer_model(const Scene& scene) {
 
 Answer certified_answer(const BatteryScene& scene) {
   const std::vector<double> s = equal_arc_lengths(scene.scene.length, answer_points);
+  const bool stretches = scene.scene.stretch != Stretch::none;
   Answer answer{.battery_scene = scene};
   answer.first = solve(scene.scene, answer_model(scene.scene), {}, s);
-  if (scene.scene.stretch != Stretch::none) {
+  if (stretches) {
     Scene fine = scene.scene;
     fine.force_model.points = fine_chain;
     answer.second = solve(fine, Model::chain, {}, s);
@@ -208,15 +209,13 @@ Answer certified_answer(const BatteryScene& scene) {
     answer.second_method = to_string(Model::exact);
   }
   answer.bounds = bounds_between(answer.first, answer.second);
-  const double agree =
-      (scene.scene.stretch != Stretch::none ? chain_method_tolerance : method_tolerance) *
-      scene.scene.length;
+  const double agree = (stretches ? chain_method_tolerance : method_tolerance) * scene.scene.length;
   if (!(answer.bounds.points_m <= agree)) {
     throw ConvergenceError(fmt::format("{}: {} and {} are {:.3g} m apart (allowed: {:.3g} m)",
                                        scene.id, to_string(answer.first.model),
                                        answer.second_method, answer.bounds.points_m, agree));
   }
-  if (scene.scene.stretch == Stretch::none) add_other_equilibria(answer);
+  if (!stretches) add_other_equilibria(answer);
   return answer;
 }
 

@@ -75,6 +75,10 @@ Battery read_battery(const std::string& text, const std::string& file,
   return battery;
 }
 
+}  // namespace
+
+std::vector<double> BatteryMotion::times() const { return equal_arc_lengths(end_time, frames); }
+
 std::string builtin_file(std::string_view name) {
   const auto file = std::find_if(builtin::suite_files.begin(), builtin::suite_files.end(),
                                  [&](const auto& one) { return one.name == name; });
@@ -83,10 +87,6 @@ std::string builtin_file(std::string_view name) {
   }
   return std::string(file->text);
 }
-
-}  // namespace
-
-std::vector<double> BatteryMotion::times() const { return equal_arc_lengths(end_time, frames); }
 
 const Battery& builtin_battery() {
   static const Battery battery = read_battery(
@@ -131,16 +131,6 @@ std::vector<BatteryScene> chosen_scenes(const Battery& battery,
     return !contains(wanted, scene.group) && !contains(wanted, scene.id);
   });
   return result;
-}
-
-std::string_view answer_schema() {
-  static const std::string text = builtin_file("schema.json");
-  return text;
-}
-
-std::string_view motion_schema() {
-  static const std::string text = builtin_file("motion_schema.json");
-  return text;
 }
 
 }  // namespace dlo::compare

@@ -60,9 +60,9 @@ struct Battery {
 [[nodiscard]] std::vector<BatteryScene> chosen_scenes(const Battery& battery,
                                                       const std::vector<std::string>& wanted);
 
-/// Returns the JSON Schema of an answer.
-[[nodiscard]] std::string_view answer_schema();
-[[nodiscard]] std::string_view motion_schema();  ///< JSON Schema of a motion's answer
+/// Returns the text of a file of data/suite, such as the JSON Schema of an answer.
+/// @throws InputError if the file is not compiled into the library
+[[nodiscard]] std::string builtin_file(std::string_view name);
 
 namespace builtin {
 

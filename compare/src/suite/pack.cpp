@@ -303,29 +303,31 @@ void write_pack(const std::string& folder, const Pack& pack) {
                 {"version", pack.version},
                 {"unit", "SI"},
                 {"answers", Json::array()}};
-  const auto entry = [](const BatteryScene& scene, double points_bound, int decimals) -> Json {
-    return {
-        {"id", scene.id},
-        {"class", scene.group},
-        {"isolates", scene.isolates},
-        {"answer", scene.id + ".json"},
-        {"points", scene.id + ".csv"},
-        {"points_bound_over_length", bound_of_points(points_bound, decimals, scene.scene.length)}};
+  const auto write = [&](const BatteryScene& scene, const Json& document, const std::string& csv,
+                         double bound_over_length) {
+    write_document(path / (scene.id + ".json"), document);
+    write_file(path / (scene.id + ".csv"), csv);
+    index["answers"].push_back({{"id", scene.id},
+                                {"class", scene.group},
+                                {"isolates", scene.isolates},
+                                {"answer", scene.id + ".json"},
+                                {"points", scene.id + ".csv"},
+                                {"points_bound_over_length", bound_over_length}});
   };
   for (const Answer& answer : pack.answers) {
-    write_document(path / (answer.battery_scene.id + ".json"), answer_json(answer));
-    write_file(path / (answer.battery_scene.id + ".csv"), answer_csv(answer));
-    write_file(path / (answer.battery_scene.id + ".vtu"), answer_vtu(answer));
-    index["answers"].push_back(
-        entry(answer.battery_scene, answer.bounds.points_m, answer_decimals));
+    const BatteryScene& scene = answer.battery_scene;
+    write(scene, answer_json(answer), answer_csv(answer),
+          bound_of_points(answer.bounds.points_m, answer_decimals, scene.scene.length));
+    write_file(path / (scene.id + ".vtu"), answer_vtu(answer));
   }
   for (const MotionAnswer& answer : pack.motions) {
-    write_document(path / (answer.battery_scene.id + ".json"), motion_json(answer));
-    write_file(path / (answer.battery_scene.id + ".csv"), motion_csv(answer));
-    index["answers"].push_back(entry(answer.battery_scene, answer.points_bound_m, motion_decimals));
+    const BatteryScene& scene = answer.battery_scene;
+    write(scene, motion_json(answer), motion_csv(answer),
+          bound_of_points(answer.points_bound_m, motion_decimals, scene.scene.length));
   }
-  write_file(path / "schema.json", answer_schema());
-  write_file(path / "motion_schema.json", motion_schema());
+  for (const char* schema : {"schema.json", "motion_schema.json"}) {
+    write_file(path / schema, builtin_file(schema));
+  }
   write_document(path / "suite.json", index);
 }
 

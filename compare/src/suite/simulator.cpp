@@ -182,16 +182,14 @@ void write_run(const std::filesystem::path& file, const std::string& known,
 SimulatorRun run_simulator(const Simulator& simulator, const BatteryScene& scene, int points,
                            double time_limit) {
   SimulatorRun run;
+  BatteryScene numbered = scene;
+  numbered.scene.force_model.points = points;
   if (simulator.function && scene.motion) {
     run.status = RunStatus::not_supported;
     run.problem = "a function has no motion";
   } else if (simulator.function) {
-    Scene numbered = scene.scene;
-    numbered.force_model.points = points;
-    run = simulator.function(numbered, points);
+    run = simulator.function(numbered.scene, points);
   } else if (simulator.own) {
-    BatteryScene numbered = scene;
-    numbered.scene.force_model.points = points;
     numbered.scene.force_model.law = simulator.law;
     run = run_own(*simulator.own, std::move(numbered), points, time_limit);
   } else {
