@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <filesystem>
+#include <utility>
 
 #include "base/quote.hpp"
 #include "base/text.hpp"
@@ -113,19 +114,6 @@ std::string sections_text(const MjcfChain& chain) {
   return text;
 }
 
-/// Returns the chain with the assumptions that were made.
-ModelChain make_model_chain(const MjcfWorld& world, const MjcfChain& chain,
-                            const std::vector<std::string>& notes) {
-  ModelChain result;
-  result.words = "MJCF, " + chain.words;
-  result.segments = static_cast<Eigen::Index>(chain.segments.size());
-  result.first_body = static_cast<Eigen::Index>(chain.segments.front().body);
-  result.bodies = static_cast<Eigen::Index>(world.bodies.size());
-  result.notes = chain.notes;
-  result.notes.insert(result.notes.end(), notes.begin(), notes.end());
-  return result;
-}
-
 }  // namespace
 
 MjcfScene mjcf_scene(std::string_view text, const std::string& file) {
@@ -136,9 +124,10 @@ MjcfScene mjcf_scene(std::string_view text, const std::string& file) {
   refusals.attempt([&] { options = read_options(attributes); });
   const MjcfWorld world = read_mjcf_world(attributes);
   refusals.throw_if_any();
-  const MjcfChain chain = find_mjcf_chain(attributes, world);
+  MjcfChain chain = find_mjcf_chain(attributes, world);
   require_in_plane(xml, world, chain, options.gravity);
-  std::vector<std::string> notes = world.notes;
+  std::vector<std::string> notes = std::move(chain.notes);
+  notes.insert(notes.end(), world.notes.begin(), world.notes.end());
   const std::vector<MjcfGripper> holds =
       find_mjcf_grippers(attributes, world, chain, options.equality, notes);
   const std::string name =
@@ -148,7 +137,12 @@ MjcfScene mjcf_scene(std::string_view text, const std::string& file) {
   scene += rod_text(world, chain) + sections_text(chain) + grippers_text(holds);
   if (options.contact) scene += mjcf_obstacles(attributes, world, chain, holds, notes);
   refusals.throw_if_any();
-  return {std::move(scene), make_model_chain(world, chain, notes)};
+  return {std::move(scene),
+          {.words = "MJCF, " + chain.words,
+           .notes = std::move(notes),
+           .segments = static_cast<Eigen::Index>(chain.segments.size()),
+           .first_body = static_cast<Eigen::Index>(chain.segments.front().body),
+           .bodies = static_cast<Eigen::Index>(world.bodies.size())}};
 }
 
 }  // namespace dlo::compare
