@@ -1,7 +1,6 @@
 #include "dlo/compare/comparison.hpp"
 
 #include <algorithm>
-#include <cmath>
 #include <limits>
 
 #include "dlo/compare/chain.hpp"
@@ -93,10 +92,9 @@ Comparison compare(const Scene& scene, const SolveOptions& options,
       !has_friction_contact(scene, result.force.obstacles)) {
     result.force.neglected.emplace_back("friction");
   }
-  const std::optional<Eigen::Matrix3Xd> straight = straight_rod(scene, s);
   result.deviation = shape_deviation(scene, force, energy.sample);
   result.undeformed_rms_over_length =
-      straight ? rms(s, *straight - result.reference.points) / scene.length : NAN;
+      distance_from_straight(scene, result.reference) / scene.length;
   if (modulus == ModulusSearch::yes && result.unverified.empty()) {
     result.effective_modulus = fit_effective_modulus(scene, distance, energy, options);
   }

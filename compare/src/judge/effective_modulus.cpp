@@ -166,15 +166,6 @@ EffectiveModulus no_modulus(std::string why) {
   return result;
 }
 
-/// Returns the RMS distance of an equilibrium from the straight rod [m]; NaN if there is no
-/// straight rod.
-double rms_distance_from_straight(const Scene& scene, const energy_model::Equilibrium& state) {
-  constexpr int samples = 101;
-  const std::vector<double> s = equal_arc_lengths(scene.length, samples);
-  const auto straight = straight_rod(scene, s);
-  return straight ? rms(s, *straight - state.sample(s).points) : NAN;
-}
-
 /// Whether the followed equilibrium ends or bifurcates close to a modulus. At a bifurcation the
 /// smallest eigenvalue is zero and increases on both sides; on one side it belongs to another
 /// branch. False close to the ends of the range of moduli.
@@ -271,7 +262,10 @@ EffectiveModulus fit_effective_modulus(const Scene& scene, const ShapeDistance& 
                             : fmt::format("time limit of {:g} s reached", options.time_limit));
   }
   result.solves = mean_square.solves();
-  result.optimum = optimum_given_displacement(result, rms_distance_from_straight(scene, state));
+  constexpr int samples = 101;
+  const std::vector<double> s = equal_arc_lengths(scene.length, samples);
+  result.optimum = optimum_given_displacement(
+      result, distance_from_straight(scene, {s, state.sample(s).points}));
   return result;
 }
 

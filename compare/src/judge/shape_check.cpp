@@ -166,8 +166,7 @@ ShapeCheck compared(const Scene& scene, const MeasuredShape& shape, Alignment al
   const std::vector<double>& s = measured.arc_length;
   result.reference = {s, measured.reference};
   result.rod = rod;
-  const std::optional<Eigen::Matrix3Xd> straight = straight_rod(scene, s);
-  result.movement_m = straight ? rms(s, *straight - result.reference.points) : NAN;
+  result.movement_m = distance_from_straight(scene, result.reference);
   result.deviation = measured_deviation(scene, alignment, rod.sample, measured, result.movement_m);
   result.length_beyond_ends_m = measured.excess_at_start_m + measured.excess_at_end_m;
   result.between = intervals_between_points(s, rod.sample, scene.length);

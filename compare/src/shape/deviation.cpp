@@ -98,6 +98,11 @@ std::optional<Eigen::Matrix3Xd> straight_rod(const Scene& scene, const std::vect
   return points;
 }
 
+double distance_from_straight(const Scene& scene, const Shape& shape) {
+  const std::optional<Eigen::Matrix3Xd> straight = straight_rod(scene, shape.arc_length);
+  return straight ? rms(shape.arc_length, *straight - shape.points) : NAN;
+}
+
 std::optional<Eigen::Index> free_tip(const Scene& scene, const std::vector<double>& s) {
   const auto is_free = [&](double at) {
     return std::none_of(scene.grippers.begin(), scene.grippers.end(),

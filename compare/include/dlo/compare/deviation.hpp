@@ -52,6 +52,9 @@ struct Deviation {
 [[nodiscard]] std::optional<Eigen::Matrix3Xd> straight_rod(const Scene& scene,
                                                            const std::vector<double>& s);
 
+/// Returns the RMS distance of a shape from straight_rod() [m]; NaN if there is no straight rod.
+[[nodiscard]] double distance_from_straight(const Scene& scene, const Shape& shape);
+
 /// Computes the deviation of a scene's shape; free end and straight rod follow from the scene.
 [[nodiscard]] Deviation shape_deviation(const Scene& scene, const Shape& shape,
                                         const Reference& reference);
