@@ -5,16 +5,15 @@
 namespace dlo::compare {
 
 std::span<const NamedPart> budget_parts() {
-  static const NamedPart parts[] = {
-      {"twist", "twist", &Budget::twist, true},
-      {"natural curvature", "natural curvature", &Budget::natural_curvature, true},
-      {"law", "the law", &Budget::law},
-      {"bookkeeping", "the bookkeeping", &Budget::bookkeeping},
-      {"discretisation", "discretisation", &Budget::discretisation},
-      {"stretch", "stretch", &Budget::stretch},
-      {"contact", "compliance of obstacles", &Budget::contact},
-      {"not at rest", "not being at rest", &Budget::not_at_rest},
-      {"interaction", "law and bookkeeping together", &Budget::interaction}};
+  static const NamedPart parts[] = {{"twist", &Budget::twist, true},
+                                    {"natural curvature", &Budget::natural_curvature, true},
+                                    {"law", &Budget::law},
+                                    {"bookkeeping", &Budget::bookkeeping},
+                                    {"discretisation", &Budget::discretisation},
+                                    {"stretch", &Budget::stretch},
+                                    {"contact", &Budget::contact},
+                                    {"not at rest", &Budget::not_at_rest},
+                                    {"interaction", &Budget::interaction}};
   return parts;
 }
 

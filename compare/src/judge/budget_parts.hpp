@@ -11,7 +11,6 @@ namespace dlo::compare {
 /// A named part of an error budget.
 struct NamedPart {
   const char* name;
-  const char* words;  ///< name in a sentence
   BudgetPart Budget::*of;
   bool is_neglected = false;  ///< only present if the force model neglects this property
 };
