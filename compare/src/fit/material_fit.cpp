@@ -118,8 +118,7 @@ Calibration calibrate(std::vector<Scene> scenes, std::vector<MeasuredShape> shap
   scenes.resize(static_cast<std::size_t>(fitted));
   const std::string repeats =
       scenes.size() == shapes.size() ? remove_repeats(scenes, shapes) : std::string();
-  Calibration result{.scenes = std::move(scenes),
-                     .frame_was_fitted = options.pose != PoseFreedom::known};
+  Calibration result{.scenes = std::move(scenes)};
   for (const MeasuredShape& shape : shapes) result.files.push_back(shape.file);
   options.alternatives = true;
   if (!options.choose_options) {

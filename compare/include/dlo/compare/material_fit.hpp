@@ -76,10 +76,8 @@ struct HeldOutShape {
 /// Measured shapes of a rod and the fit of its material: the result of `dlo calibrate --shape`,
 /// also in Python.
 struct Calibration {
-  std::vector<Scene> scenes;       ///< the scene of each shape
-  std::vector<std::string> files;  ///< names of the shapes
-  /// Whether the unknown part of the shapes' frames was fitted as well.
-  bool frame_was_fitted = false;
+  std::vector<Scene> scenes;           ///< the scene of each shape
+  std::vector<std::string> files;      ///< names of the shapes
   MaterialFit fit;                     ///< result of the fit, with its alternatives
   std::vector<HeldOutShape> held_out;  ///< hold-out shapes in the order given
 };
