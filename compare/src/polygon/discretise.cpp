@@ -131,39 +131,35 @@ Cell cell_of(const Scene& scene, const Layout& layout, Eigen::Index point) {
 /// sections, of a rod twisted by grips, and of an intrinsically curved rod.
 void derive_unlike_joints(const Scene& scene, const ForceModelSettings& settings,
                           const Layout& layout, Discretisation& result) {
-  const Eigen::Index joints = settings.points - 2;
-  force_model::Bending& bending = result.rod.bending;
-  if (!scene.sections.empty()) {
-    bending.stiffnesses.resize(joints);
-    for (Eigen::Index i = 0; i < joints; ++i) {
-      const Cell cell = cell_of(scene, layout, i + 1);
-      const double EI = (cell.end - cell.begin) / scene.bending_compliance(cell.begin, cell.end);
-      bending.stiffnesses[i] = EI / scene.bending_stiffness() * bending.stiffness;
-    }
-  }
-  if (models_twist(scene, settings)) {
-    force_model::Twist& twist = result.rod.twist;
-    twist.stiffness = scene.twisting_stiffness();
-    if (!scene.sections.empty()) twist.stiffnesses.resize(joints);
-    for (Eigen::Index i = 0; i < twist.stiffnesses.size(); ++i) {
-      const Cell cell = cell_of(scene, layout, i + 1);
-      twist.stiffnesses[i] =
-          (cell.end - cell.begin) / scene.twisting_compliance(cell.begin, cell.end);
-    }
-  }
-  if (!models_natural_curvature(scene, settings)) return;
-  if (plane_transform(scene, settings)) {
+  const bool is_curved = models_natural_curvature(scene, settings);
+  if (is_curved && plane_transform(scene, settings)) {
     throw InputError(fmt::format(
         "{}: rod.natural_curvature: not in the plane z = 0 (allowed here: z = 0 of positions, "
         "directions, forces and normals; dlo solve and dlo compare rotate other planes into it)",
         scene.file));
   }
-  bending.natural_turns.resize(joints);
+  const Eigen::Index joints = settings.points - 2;
+  force_model::Bending& bending = result.rod.bending;
+  force_model::Twist& twist = result.rod.twist;
+  const bool is_twisted = models_twist(scene, settings);
+  if (is_twisted) twist.stiffness = scene.twisting_stiffness();
+  if (!scene.sections.empty()) bending.stiffnesses.resize(joints);
+  if (!scene.sections.empty() && is_twisted) twist.stiffnesses.resize(joints);
+  if (is_curved) bending.natural_turns.resize(joints);
   for (Eigen::Index i = 0; i < joints; ++i) {
     const Cell cell = cell_of(scene, layout, i + 1);
-    const double curvature = scene.natural_curvature(cell.begin, cell.end).z();
-    bending.natural_turns[i] = curvature * (cell.end - cell.begin);
+    const double length = cell.end - cell.begin;
+    if (bending.stiffnesses.size() > 0) {
+      const double EI = length / scene.bending_compliance(cell.begin, cell.end);
+      bending.stiffnesses[i] = EI / scene.bending_stiffness() * bending.stiffness;
+    }
+    if (twist.stiffnesses.size() > 0) {
+      twist.stiffnesses[i] = length / scene.twisting_compliance(cell.begin, cell.end);
+    }
+    if (!is_curved) continue;
+    bending.natural_turns[i] = scene.natural_curvature(cell.begin, cell.end).z() * length;
   }
+  if (!is_curved) return;
   Eigen::Index most = 0;
   const double largest = bending.natural_turns.cwiseAbs().maxCoeff(&most);
   if (!(largest < force_model::hooke_fold_angle)) {

@@ -122,20 +122,6 @@ bool is_taut_line_case(const Scene& scene) {
   }
 }
 
-force_model::Grip make_grip(const Gripper& gripper, const Layout& layout, Eigen::Index first) {
-  force_model::Grip hold;
-  hold.first_point = first;
-  hold.reference = gripper.position;
-  if (gripper.direction) {
-    hold.targets =
-        force_model::grip_targets(gripper.position, *gripper.direction, layout.segment_length,
-                                  gripper.at - layout.arc_length[static_cast<std::size_t>(first)]);
-  } else {
-    hold.targets = gripper.position;
-  }
-  return hold;
-}
-
 /// The rod between two neighbouring grips, without the segments that they hold.
 struct GripInterval {
   double distance = 0;  // distance between the two points [m]
@@ -304,7 +290,17 @@ Layout lay_out(const Scene& scene, const ForceModelSettings& settings) {
 std::vector<force_model::Grip> grips_of(const Scene& scene, const Layout& layout) {
   std::vector<force_model::Grip> grips;
   for (std::size_t i = 0; i < scene.grippers.size(); ++i) {
-    grips.push_back(make_grip(scene.grippers[i], layout, layout.first_held[i]));
+    const Gripper& gripper = scene.grippers[i];
+    force_model::Grip& hold = grips.emplace_back();
+    hold.first_point = layout.first_held[i];
+    hold.reference = gripper.position;
+    if (!gripper.direction) {
+      hold.targets = gripper.position;
+      continue;
+    }
+    const double at = layout.arc_length[static_cast<std::size_t>(hold.first_point)];
+    hold.targets = force_model::grip_targets(gripper.position, *gripper.direction,
+                                             layout.segment_length, gripper.at - at);
   }
   return grips;
 }
