@@ -33,16 +33,9 @@ PER_STAGE = 100  # places of the second grip between which its nodes go straight
 FEWEST_TWISTED = 7  # bricks of a rod whose end is turned: three came to no end, or to another one
 
 
-NOT_SUPPORTED = 3  # exit status of a scene that it does not have
-
-
-def fail(why):
-    sys.exit(f"calculix.py: {why}")
-
-
 def refuse(why):
     print(f"calculix.py: not supported: {why}", file=sys.stderr)
-    sys.exit(NOT_SUPPORTED)
+    sys.exit(3)  # exit status of a scene that it does not have
 
 
 def cross(a, b):
@@ -269,7 +262,7 @@ def solved(rod):
         axis = rod.axis_of(moved) if moved else []
         if moved and not is_folded(axis, rod.s):
             return axis
-    fail(problem or "ccx: an element was turned inside out")
+    sys.exit(f"calculix.py: {problem or 'ccx: an element was turned inside out'}")
 
 
 def main(scene_file, points, shape_file, thinner=1):
