@@ -203,12 +203,6 @@ SimulatorRun run_simulator(const Simulator& simulator, const BatteryScene& scene
 
 }  // namespace
 
-std::string Simulator::identity() const {
-  if (function) return fmt::format("function {}", name);
-  return own ? fmt::format("model {}", name)
-             : fmt::format("command {}", Json(program.words).dump());
-}
-
 std::vector<Simulator> parse_simulators(const std::vector<std::string>& texts) {
   std::vector<Simulator> simulators;
   std::set<std::string> taken;
@@ -229,9 +223,13 @@ SimulatorRun stored_or_new_run(const std::string& folder, const std::string& ver
   if (folder.empty()) return run_simulator(simulator, scene, points, time_limit);
   const std::filesystem::path output_folder = std::filesystem::path(folder) / simulator.name;
   const std::filesystem::path file = output_folder / fmt::format("{}_{}.json", scene.id, points);
+  const std::string identity =
+      simulator.function ? fmt::format("function {}", simulator.name)
+      : simulator.own    ? fmt::format("model {}", simulator.name)
+                         : fmt::format("command {}", Json(simulator.program.words).dump());
   const std::string known = fingerprint(fmt::format(
-      "dlo/run/3\n{}\n{}\n{}{}\n{}", version, simulator.identity(),
-      files_of_command(simulator.program.words), time_limit, battery_document(scene, points)));
+      "dlo/run/3\n{}\n{}\n{}{}\n{}", version, identity, files_of_command(simulator.program.words),
+      time_limit, battery_document(scene, points)));
   if (std::optional<SimulatorRun> run = read_run(file, known)) return std::move(*run);
   SimulatorRun run = run_simulator(simulator, scene, points, time_limit);
   if (run.status == RunStatus::failed) return run;

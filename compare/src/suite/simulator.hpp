@@ -22,9 +22,6 @@ struct Simulator {
   ForeignProgram program;              ///< command of the program
   /// Function of this process, called from any thread; empty: `own` or `program`.
   std::function<SimulatorRun(const Scene& scene, int points)> function = {};
-
-  /// Returns a text that identifies the simulator in stored results.
-  [[nodiscard]] std::string identity() const;
 };
 
 /// Reads simulators.
