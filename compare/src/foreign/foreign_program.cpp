@@ -70,22 +70,17 @@ class ProgramFolder {
   TemporaryFolder folder_{temporary_directory().string()};
 };
 
-/// Returns the last line that is not blank, as a message shows it.
-std::string last_line(const std::string& text) {
-  constexpr std::size_t most_message_bytes = 200;
-  std::size_t end = text.find_last_not_of(" \t\r\n");
-  if (end == std::string::npos) return "";
-  const std::size_t before = text.find_last_of('\n', end);
-  const std::size_t begin = before == std::string::npos ? 0 : before + 1;
-  return display(text.substr(begin, std::min(end + 1 - begin, most_message_bytes)));
-}
-
-/// Returns ": " and the last line of a program's standard error, or an empty string if the file
-/// cannot be read: a program may have written anything, of any size.
+/// Returns ": " and the last line of a program's standard error that is not blank, or an empty
+/// string if the file cannot be read: a program may have written anything, of any size.
 std::string last_words(const std::string& file) {
+  constexpr std::size_t most_message_bytes = 200;
   try {
-    const std::string line = last_line(read_regular_file(file, "stderr"));
-    return line.empty() ? "" : ": " + line;
+    const std::string text = read_regular_file(file, "stderr");
+    const std::size_t end = text.find_last_not_of(" \t\r\n");
+    if (end == std::string::npos) return "";
+    const std::size_t before = text.find_last_of('\n', end);
+    const std::size_t begin = before == std::string::npos ? 0 : before + 1;
+    return ": " + display(text.substr(begin, std::min(end + 1 - begin, most_message_bytes)));
   } catch (const InputError&) {
     return "";
   }
