@@ -54,8 +54,6 @@ Eigen::VectorXd fit_parameters(const SceneCause& cause, double noise, FittedRods
 
 constexpr double degree = std::numbers::pi / 180;
 
-Eigen::VectorXd zeros(Eigen::Index count) { return Eigen::VectorXd::Zero(count); }
-
 using Numbers = Eigen::VectorXd;
 
 /// Returns a cause whose numbers change the scene. @param difference_step, longest_step  of every
@@ -73,7 +71,7 @@ SceneCause make_cause(const Scene& scene, const Numbers& start, double differenc
 
 SceneCause stiffness(const Scene& scene) {
   return make_cause(
-      scene, zeros(1), 0.02, 1.5,
+      scene, Numbers::Zero(1), 0.02, 1.5,
       [](Scene& changed, const Numbers& p) { changed.scale_modulus(std::exp(p[0])); },
       [scene](const Scene&, const Numbers& p) {
         std::string text =
@@ -87,7 +85,7 @@ SceneCause stiffness(const Scene& scene) {
 
 SceneCause torsional_stiffness(const Scene& scene) {
   return make_cause(
-      scene, zeros(1), 0.05, 1.5,
+      scene, Numbers::Zero(1), 0.05, 1.5,
       [](Scene& changed, const Numbers& p) { changed.scale_torsion(std::exp(p[0])); },
       [](const Scene&, const Numbers& p) {
         return fmt::format("the torsional stiffness is {:.3g} times the scene's", std::exp(p[0]));
@@ -124,7 +122,7 @@ SceneCause direction(const Scene& scene, std::size_t index,
                      const std::optional<Eigen::Vector3d>& normal) {
   const Eigen::Matrix3Xd ways = rotation_axes(*scene.grippers[index].direction, normal);
   return make_cause(
-      scene, zeros(ways.cols()), 1 * degree, 40 * degree,
+      scene, Numbers::Zero(ways.cols()), 1 * degree, 40 * degree,
       [index, ways](Scene& changed, const Numbers& p) {
         rotate_clamp(changed.grippers[index], ways * p);
       },
@@ -140,7 +138,7 @@ SceneCause position(const Scene& scene, std::size_t index,
                     const std::optional<Eigen::Vector3d>& normal) {
   const Eigen::Matrix3Xd ways = translation_directions(normal);
   return make_cause(
-      scene, zeros(ways.cols()), 1e-3 * scene.length, 0.2 * scene.length,
+      scene, Numbers::Zero(ways.cols()), 1e-3 * scene.length, 0.2 * scene.length,
       [index, ways](Scene& changed, const Numbers& p) {
         changed.grippers[index].position += ways * p;
       },
@@ -203,7 +201,7 @@ SceneCause pins_to_clamps_cause(const Scene& scene, const std::vector<std::size_
     return fmt::format("the pins hold their directions, {}: clamps, not pins",
                        fmt::join(directions, ", "));
   };
-  SceneCause cause = make_cause(held, zeros(count), 1 * degree, 40 * degree, turn, words);
+  SceneCause cause = make_cause(held, Numbers::Zero(count), 1 * degree, 40 * degree, turn, words);
   cause.changes_support = true;
   return cause;
 }
@@ -220,7 +218,7 @@ SceneCause clamps_to_pins_cause(const Scene& scene, const std::vector<std::size_
           ? fmt::format("gripper {} lets the rod rotate: a pin, not a clamp", clamps[0] + 1)
           : "the clamps let the rod rotate: pins, not clamps";
   SceneCause cause = make_cause(
-      free, zeros(0), 0, 0, [](Scene&, const Numbers&) {},
+      free, Numbers::Zero(0), 0, 0, [](Scene&, const Numbers&) {},
       [words](const Scene&, const Numbers&) { return words; });
   cause.changes_support = true;
   return cause;
@@ -245,7 +243,7 @@ void add_support_causes(std::vector<SceneCause>& causes, const Scene& scene, con
 SceneCause natural_curvature(const Scene& scene) {
   const double unit = 1 / scene.length;
   return make_cause(
-      scene, zeros(1), 0.02 * unit, 3 * unit,
+      scene, Numbers::Zero(1), 0.02 * unit, 3 * unit,
       [](Scene& changed, const Numbers& p) {
         increase_natural_curvature(changed, 0, {0, p[0]});
       },
