@@ -61,19 +61,10 @@ struct CsvCell {
 };
 
 Model solver_of(SweepModel model) {
-  switch (model) {
-    case SweepModel::chain:
-    case SweepModel::compare_chain:
-      return Model::chain;
-    case SweepModel::exact:
-      return Model::exact;
-    case SweepModel::force:
-    case SweepModel::compare:
-      return Model::force;
-    case SweepModel::energy:
-      break;
-  }
-  return Model::energy;
+  // In the order of SweepModel.
+  constexpr Model models[] = {Model::energy, Model::chain, Model::exact,
+                              Model::force,  Model::force, Model::chain};
+  return models[static_cast<std::size_t>(model)];
 }
 
 }  // namespace
