@@ -161,8 +161,10 @@ void refuse_stretch_beside_obstacles(const Scene& scene,
       scene.file));
 }
 
-/// Rejects a rod that stretches, with a message about the scene's key. @throws InputError
-void refuse_stretch(const Scene& scene) {
+/// Rejects a scene that the energy model does not have: loads without a potential, or a rod that
+/// stretches, with a message about the scene's key. @throws InputError
+void require_energy_model(const Scene& scene) {
+  scene.require_potential("the energy model");
   if (scene.stretch != Stretch::counted) return;
   throw InputError(fmt::format(
       "{}: rod.stretch = true: model energy does not stretch (allowed: --model exact, or chain and "
@@ -185,8 +187,7 @@ energy_model::Equilibrium solve_reference(const Scene& scene, Model model,
   if (model == Model::exact && scene.stretch == Stretch::automatic) {
     return decide_stretch(scene, model, options).rod;
   }
-  if (model == Model::energy) scene.require_potential("the energy model");
-  if (model == Model::energy) refuse_stretch(scene);
+  if (model == Model::energy) require_energy_model(scene);
   if (model == Model::exact) refuse_stretch_beside_obstacles(scene, nullptr);
   const energy_model::Problem problem = energy_problem(scene);
   energy_model::Equilibrium result;
@@ -217,8 +218,7 @@ energy_model::Equilibrium solve_reference(const Scene& scene, Model model,
 }
 
 energy_model::EnergySearch search_states(const Scene& scene, const SolveOptions& options) {
-  scene.require_potential("the energy model");
-  refuse_stretch(scene);
+  require_energy_model(scene);
   energy_model::EnergySearch search;
   std::vector<energy_model::Equilibrium>& states = search.equilibria;
   try {
@@ -244,8 +244,7 @@ energy_model::EnergySearch search_states(const Scene& scene, const SolveOptions&
 
 energy_model::Equilibrium reference_near(const Scene& scene, const Shape& shape,
                                          const SolveOptions& options) {
-  scene.require_potential("the energy model");
-  refuse_stretch(scene);
+  require_energy_model(scene);
   try {
     energy_model::Equilibrium near =
         energy_model::energy_near(energy_problem(scene), shape.arc_length, shape.points,

@@ -94,10 +94,7 @@ Equilibrium mirrored(const Scene& scene, const Equilibrium& state, const Eigen::
 
 /// Whether a state precedes another in the order of states: stable ones first, then by energy.
 bool precedes(const Equilibrium& a, const Equilibrium& b) {
-  const bool a_stable = is_stable(a);
-  const bool b_stable = is_stable(b);
-  if (a_stable != b_stable) return a_stable;
-  return a.energy.total() < b.energy.total();
+  return std::pair(!is_stable(a), a.energy.total()) < std::pair(!is_stable(b), b.energy.total());
 }
 
 }  // namespace
