@@ -3,7 +3,6 @@
 #include <Eigen/Geometry>
 #include <vector>
 
-#include "dlo/energy_model/plane.hpp"
 #include "polygon/point_layout.hpp"
 #include "scene/scene_problem.hpp"
 
@@ -25,10 +24,7 @@ std::optional<ChainScene> chain_scene(const Scene& scene, const Discretisation& 
   const std::optional<energy_model::Plane> plane = energy_model::find_plane(
       grip.position, reversed ? Eigen::Vector3d(-*grip.direction) : *grip.direction, forces);
   if (!plane) return std::nullopt;
-  ChainScene result;
-  result.origin = plane->origin;
-  result.x = plane->x;
-  result.y = plane->y;
+  ChainScene result{.plane = *plane, .problem = {}};
   energy_model::ChainProblem& problem = result.problem;
   problem.segment_lengths = discretisation.rod.rest_lengths;
   problem.law = settings.law == BendingLaw::paper
@@ -60,7 +56,7 @@ std::optional<ChainScene> chain_scene(const Scene& scene, const Discretisation& 
 }
 
 Eigen::Matrix3Xd ChainScene::to_space(const Eigen::Matrix2Xd& points) const {
-  return (x * points.row(0) + y * points.row(1)).colwise() + origin;
+  return (plane.x * points.row(0) + plane.y * points.row(1)).colwise() + plane.origin;
 }
 
 energy_model::PolygonProblem polygon_problem(const force_model::Rod& rod,

@@ -6,6 +6,7 @@
 #include "dlo/compare/discretise.hpp"
 #include "dlo/compare/scene.hpp"
 #include "dlo/energy_model/chain.hpp"
+#include "dlo/energy_model/plane.hpp"
 #include "dlo/energy_model/polygon.hpp"
 #include "dlo/energy_model/problem.hpp"
 
@@ -13,10 +14,8 @@ namespace dlo::compare {
 
 /// A scene's polygon as a problem of the solver for rigid chains.
 struct ChainScene {
+  energy_model::Plane plane;           ///< plane of the polygon, in space
   energy_model::ChainProblem problem;  ///< in the coordinates of the plane
-  Eigen::Vector3d origin;              ///< origin of the plane's frame, in space [m]
-  Eigen::Vector3d x;                   ///< first axis of the plane, unit
-  Eigen::Vector3d y;                   ///< second axis of the plane, unit
 
   /// Returns points of the plane [m], 2 x M, as points in space [m], 3 x M.
   [[nodiscard]] Eigen::Matrix3Xd to_space(const Eigen::Matrix2Xd& points) const;

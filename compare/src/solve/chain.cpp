@@ -27,7 +27,7 @@ GripperLoad gripper_load_on_chain(const Discretisation& discretisation, const Ch
   load.force = -discretisation.rod.loads.rowwise().sum();
   const Eigen::Vector3d start = chain.to_space(result.points.leftCols<1>());
   const Eigen::Vector3d arm = start - discretisation.rod.grips.front().reference;
-  load.torque = result.clamp_torque * chain.x.cross(chain.y) + arm.cross(load.force);
+  load.torque = result.clamp_torque * chain.plane.x.cross(chain.plane.y) + arm.cross(load.force);
   return load;
 }
 
