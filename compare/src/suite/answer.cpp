@@ -98,8 +98,7 @@ void add_other_equilibria(Answer& answer) {
       answer.first.smallest_eigenvalue = one.smallest_eigenvalue;
       continue;
     }
-    answer.others.push_back(
-        {one.energy.total(), is_stable(one), one.smallest_eigenvalue, difference});
+    answer.others.push_back({one.energy.total(), is_stable(one), difference});
     constexpr double tolerance = 1e-9;
     if (is_stable(one) && one.energy.total() < answer.first.energy.total() - tolerance * large) {
       answer.is_lowest = false;
@@ -199,16 +198,17 @@ Answer certified_answer(const BatteryScene& scene) {
   const bool stretches = scene.scene.stretch != Stretch::none;
   Answer answer{.battery_scene = scene};
   answer.first = solve(scene.scene, answer_model(scene.scene), {}, s);
+  Solution second;
   if (stretches) {
     Scene fine = scene.scene;
     fine.force_model.points = fine_chain;
-    answer.second = solve(fine, Model::chain, {}, s);
+    second = solve(fine, Model::chain, {}, s);
     answer.second_method = fmt::format("chain, N = {}", fine_chain);
   } else {
-    answer.second = solve(scene.scene, Model::exact, {}, s);
+    second = solve(scene.scene, Model::exact, {}, s);
     answer.second_method = to_string(Model::exact);
   }
-  answer.bounds = bounds_between(answer.first, answer.second);
+  answer.bounds = bounds_between(answer.first, second);
   const double agree = (stretches ? chain_method_tolerance : method_tolerance) * scene.scene.length;
   if (!(answer.bounds.points_m <= agree)) {
     throw ConvergenceError(fmt::format("{}: {} and {} are {:.3g} m apart (allowed: {:.3g} m)",

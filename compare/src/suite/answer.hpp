@@ -15,10 +15,9 @@ namespace dlo::compare {
 
 /// Equilibrium of a scene other than its answer.
 struct OtherEquilibrium {
-  double energy_J = 0;             ///< total energy [J]
-  bool stable = false;             ///< whether it is stable, as far as known
-  double smallest_eigenvalue = 0;  ///< Solution::smallest_eigenvalue
-  double distance_m = 0;           ///< RMS distance from the answer [m]
+  double energy_J = 0;    ///< total energy [J]
+  bool stable = false;    ///< whether it is stable, as far as known
+  double distance_m = 0;  ///< RMS distance from the answer [m]
 };
 
 /// Bounds of the differences between the results of two methods. The bound of the points includes
@@ -35,7 +34,6 @@ struct AnswerBounds {
 struct Answer {
   BatteryScene battery_scene;  ///< the scene
   Solution first;              ///< the answer: by `energy`, or by `exact` if the rod stretches
-  Solution second;             ///< the solution with which it was compared
   std::string second_method;   ///< name of the second method: "exact", "chain, N = 1024"
   AnswerBounds bounds;         ///< differences between both solutions
   /// Other equilibria that a search has found, in the order of energy; none if the rod stretches,
