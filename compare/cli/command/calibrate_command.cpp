@@ -91,8 +91,8 @@ std::vector<compare::Scene> load_all(const std::vector<std::string>& paths,
 
 /// Writes the result. Without --format, a .toml file gets the document that can be read again, and
 /// the text is shown as well.
-void write_calibration(const OutputOptions& output, bool format_is_given, const Formats& formats) {
-  const bool to_toml_file = !format_is_given && output.format == "toml";
+void write_calibration(const OutputOptions& output, const Formats& formats) {
+  const bool to_toml_file = !output.format_is_given && output.format == "toml";
   // The text is shown even if there is nothing to write.
   if (to_toml_file) write_output({}, formats.at("text")());
   write_output(output, formats);
@@ -114,7 +114,7 @@ std::vector<compare::MeasuredShape> load_shapes(const std::vector<std::string>& 
   return shapes;
 }
 
-void run_material(const CalibrateOptions& options, bool format_is_given) {
+void run_material(const CalibrateOptions& options) {
   options.plot.require_drawable();
   std::vector<compare::Scene> scenes = load_all(options.scenes, options.overrides);
   const std::vector<compare::MeasuredShape> shapes =
@@ -129,13 +129,13 @@ void run_material(const CalibrateOptions& options, bool format_is_given) {
     return compare::calibrate(std::move(scenes), shapes, options.material_options(), held_out);
   });
   const compare::Document document = material_document(found);
-  write_calibration(options.output, format_is_given,
+  write_calibration(options.output,
                     formats_of(document, {{"toml", [&] { return material_toml(found); }}}));
   options.plot.draw([&] { return compare::fit_picture(found.scenes, found.fit); });
 }
 
 /// Calibrates the springs of chains for the scenes' own rods, without measured shapes.
-void run_chains(const CalibrateOptions& options, bool format_is_given) {
+void run_chains(const CalibrateOptions& options) {
   const ChainLayout layout = options.chain_layout();
   const compare::SolveOptions solve = options.overrides.solve();
   std::vector<compare::ChainSprings> chains;
@@ -156,10 +156,10 @@ void run_chains(const CalibrateOptions& options, bool format_is_given) {
       .json = {{"chains", chains_json(chains)}},
       .columns = {
           {"chains/#/joints", "at_m,joint_stiffness_Nm_per_rad,binormal_stiffness_Nm_per_rad"}}};
-  write_calibration(options.output, format_is_given, formats_of(document));
+  write_calibration(options.output, formats_of(document));
 }
 
-void run_motion(const CalibrateOptions& options, bool format_is_given) {
+void run_motion(const CalibrateOptions& options) {
   if (options.scenes.size() != 1) {
     throw compare::InputError("--motion: of one scene (allowed: one SCENE)");
   }
@@ -175,19 +175,19 @@ void run_motion(const CalibrateOptions& options, bool format_is_given) {
                            .solve = options.overrides.solve()},
                           [&bar](const std::string& what) { bar.stage(what); });
   const compare::Document document = motion_fit_document(found, scene);
-  write_calibration(options.output, format_is_given,
+  write_calibration(options.output,
                     formats_of(document, {{"toml", [&] { return motion_toml(found, scene); }}}));
   if (!found.not_identified.empty()) exit_with_status(ExitStatus::not_converged);
 }
 
-void run_force_model(const CalibrateOptions& options, bool points_are_given, bool format_is_given) {
+void run_force_model(const CalibrateOptions& options) {
   const std::vector<compare::Scene> scenes = load_all(options.scenes, options.overrides);
   const std::vector<compare::Scene> holdouts = load_all(options.holdouts, options.overrides);
   for (const auto* list : {&scenes, &holdouts}) {
     for (const compare::Scene& scene : *list) warn_of_neglected_by_polygon(scene);
   }
   compare::ForceModelFitOptions fit_options;
-  if (points_are_given) fit_options.points = scenes.front().force_model.points;
+  if (options.overrides.gives_points()) fit_options.points = scenes.front().force_model.points;
   if (options.target) fit_options.target = *options.target;
   fit_options.solve = options.overrides.solve();
   const compare::ForceModelFit fit = with_progress("calibrate", [&](const auto& progress) {
@@ -195,45 +195,40 @@ void run_force_model(const CalibrateOptions& options, bool points_are_given, boo
     return compare::fit_force_model(scenes, holdouts, fit_options);
   });
   const compare::Document document = force_model_document(fit, options.target.has_value());
-  write_calibration(options.output, format_is_given,
+  write_calibration(options.output,
                     formats_of(document, {{"csv", [&] { return force_model_csv(fit); }},
                                           {"toml", [&] { return force_model_toml(fit); }}}));
   // The default target was not requested by the user.
   if (!fit.reaches_target() && options.target) exit_with_status(ExitStatus::outside_tolerance);
 }
 
-void prepare(Command& command) {
-  const auto options = std::make_shared<CalibrateOptions>();
-  CalibrateOptions& o = *options;
-  command.bind("SCENE", o.scenes, "--holdout", o.holdouts, "--target", o.target, "--shape",
-               o.shapes, "--density", o.fit.density, "--torsional-stiffness",
-               o.fit.torsional_stiffness, "--noise", o.fit.noise, "--natural-curvature",
-               o.fit.natural_curvature_terms, "--clamp-angles", o.fit.direction_tolerance,
-               "--clamp-positions", o.fit.position_tolerance, "--clamp-rolls", o.fit.roll_tolerance,
-               "--same-clamps", o.fit.shared_clamps, "--clamp-scatter", o.fit.direction_scatter,
-               "--camera-tilt", o.fit.camera_tilt, "--predict", o.fit.predict, "--options",
-               o.chosen, "--motion", o.motions);
-  command.add("--segments", o.segments)->check(check_segments);
-  command.bind(o.plot, o.shape_options, o.overrides, o.output);
-  command.runs([options, &app = command.app()] {
-    const bool format_is_given = app.count("--format") > 0;
-    if (!options->motions.empty()) {
-      run_motion(*options, format_is_given);
-    } else if (options->shapes.empty() && !options->segments.empty()) {
-      run_chains(*options, format_is_given);
-    } else if (options->shapes.empty()) {
-      run_force_model(*options, app.count("--points") > 0, format_is_given);
-    } else {
-      run_material(*options, format_is_given);
-    }
-  });
+void run(const CalibrateOptions& options) {
+  if (!options.motions.empty()) {
+    run_motion(options);
+  } else if (options.shapes.empty() && !options.segments.empty()) {
+    run_chains(options);
+  } else if (options.shapes.empty()) {
+    run_force_model(options);
+  } else {
+    run_material(options);
+  }
 }
 
 }  // namespace
 
 void add_calibrate_command(CLI::App& app) {
-  const auto command = std::make_shared<Command>(app, "calibrate");
-  command->prepares([command] { prepare(*command); });
+  add_command<CalibrateOptions>(app, "calibrate", run, [](Command& command, CalibrateOptions& o) {
+    command.bind("SCENE", o.scenes, "--holdout", o.holdouts, "--target", o.target, "--shape",
+                 o.shapes, "--density", o.fit.density, "--torsional-stiffness",
+                 o.fit.torsional_stiffness, "--noise", o.fit.noise, "--natural-curvature",
+                 o.fit.natural_curvature_terms, "--clamp-angles", o.fit.direction_tolerance,
+                 "--clamp-positions", o.fit.position_tolerance, "--clamp-rolls",
+                 o.fit.roll_tolerance, "--same-clamps", o.fit.shared_clamps, "--clamp-scatter",
+                 o.fit.direction_scatter, "--camera-tilt", o.fit.camera_tilt, "--predict",
+                 o.fit.predict, "--options", o.chosen, "--motion", o.motions);
+    command.add("--segments", o.segments)->check(check_segments);
+    command.bind(o.plot, o.shape_options, o.overrides, o.output);
+  });
 }
 
 }  // namespace dlo::cli

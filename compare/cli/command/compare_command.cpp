@@ -68,9 +68,9 @@ void run(const CompareOptions& options) {
   std::string unverified;
   compare::SolveOptions solve = options.overrides.solve();
   solve.accept_unverified = true;
-  const bool explain = options.plan.explain() && options.output.format == "text";
+  const bool explain = options.plan.explain && options.output.format == "text";
   const bool shows_plan = explain || options.output.format == "json";
-  const auto plan = shows_plan ? std::optional(options.plan.plan()) : std::nullopt;
+  const auto plan = shows_plan ? std::optional(options.plan.plan) : std::nullopt;
   {
     ProgressBar bar("compare");
     for (const std::string& path : options.scenes) {

@@ -118,7 +118,7 @@ void run(const SolveOptions& options) {
   }
   compare::SolveOptions solve = options.overrides.solve();
   solve.accept_unverified = true;
-  solve.target = options.plan.plan().target;
+  solve.target = options.plan.plan.target;
   compare::AllSolutions all;
   if (options.all) {
     all = compare::solve_all(scene, solve, arc_lengths);
@@ -128,14 +128,14 @@ void run(const SolveOptions& options) {
   const compare::Solution& solution = all.solutions.front();
   warn_of_neglected(options, solution, scene);
   const auto plan = [&] {
-    compare::PlanOptions plan_options = options.plan.plan();
+    compare::PlanOptions plan_options = options.plan.plan;
     plan_options.time_limit = std::min(plan_options.time_limit, solve.time_limit);
     return compare::make_plan(scene, plan_options);
   };
   write_output(options.output,
                Formats{{"text",
                         [&] {
-                          return (options.plan.explain() ? plan_text(plan(), scene) : "") +
+                          return (options.plan.explain ? plan_text(plan(), scene) : "") +
                                  solution_text(solution, scene) +
                                  (options.all ? equilibria_text(all, scene) : "");
                         }},

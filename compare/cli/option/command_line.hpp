@@ -106,10 +106,6 @@ class Command {
   }
   [[nodiscard]] CLI::App& app() { return app_; }
 
-  /// Sets a function that adds the options when the command is chosen.
-  void prepares(const std::function<void()>& prepare) {
-    app_.preparse_callback([prepare](std::size_t /*words*/) { prepare(); });
-  }
   /// Sets the function that the command runs, after all options have been added, and which options
   /// need or exclude others. @throws std::logic_error if a row is not bound
   void runs(const std::function<void()>& run);
@@ -138,7 +134,7 @@ void add_command(CLI::App& app, const std::string& name, void (*run)(const Optio
                  const Bind& bind) {
   const auto options = std::make_shared<Options>();
   const auto command = std::make_shared<Command>(app, name);
-  command->prepares([command, options, run, bind] {
+  command->app().preparse_callback([command, options, run, bind](std::size_t /*words*/) {
     bind(*command, *options);
     command->runs([options, run] { run(*options); });
   });

@@ -74,12 +74,18 @@ void require_no_frame_of_series(const std::string& series,
 
 void exit_with_status(ExitStatus status) { throw CLI::RuntimeError(static_cast<int>(status)); }
 
-std::string format_of_file(const std::string& file, const std::vector<std::string>& formats) {
-  const std::string extension = std::filesystem::path(file).extension().string();
-  for (const std::string& format : formats) {
-    if (extension == "." + format) return format;
-  }
-  return {};
+void OutputOptions::add_to(Command& command) {
+  command.bind("--format", format, "--output", file);
+  CLI::App& app = command.app();
+  app.parse_complete_callback([this, &app, formats = command.choices("--format")] {
+    format_is_given = app.count("--format") > 0;
+    const std::string extension = std::filesystem::path(file).extension().string();
+    for (const std::string& known : formats) {
+      if (format_is_given || extension != "." + known) continue;
+      format = known;
+      app.get_option("--format")->default_str(format);
+    }
+  });
 }
 
 void write_output(const OutputOptions& options, const std::string& content) {

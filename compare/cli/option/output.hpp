@@ -40,6 +40,7 @@ enum class ExitStatus : int {
 struct OutputOptions {
   std::string format = "text";
   std::string file;
+  bool format_is_given = false;  ///< whether --format is given
 
   /// Adds the options. The format is that of the file's extension unless --format is given.
   void add_to(Command& command);
@@ -47,11 +48,6 @@ struct OutputOptions {
 
 /// Functions that return a result, by the names of its formats.
 using Formats = std::map<std::string, std::function<std::string()>>;
-
-/// Returns the format of a file's extension: "csv" for shape.csv; empty unless it is one of
-/// `formats`.
-[[nodiscard]] std::string format_of_file(const std::string& file,
-                                         const std::vector<std::string>& formats);
 
 /// Writes to standard output, or to a file as compare::OutputFile does.
 /// @throws compare::OutputError naming the output that cannot be written

@@ -46,22 +46,6 @@ void warn_of_neglected_by_polygon(const compare::Scene& scene) {
   }
 }
 
-void OutputOptions::add_to(Command& command) {
-  command.bind("--format", format, "--output", file);
-  CLI::App& app = command.app();
-  app.parse_complete_callback([this, &app, formats = command.choices("--format")] {
-    if (app.count("--format") > 0) return;
-    const std::string extension = format_of_file(file, formats);
-    if (extension.empty()) return;
-    format = extension;
-    app.get_option("--format")->default_str(format);
-  });
-}
-
-void PlanOptions::add_to(Command& command) {
-  command.bind("--explain", explain_, "--target-error", plan_.target);
-}
-
 void SceneOptions::add_to(Command& command) {
   command_ = &command.app();
   command.bind("--time", time_, "--parameters", parameters_, "--points", points_, "--law", law_,

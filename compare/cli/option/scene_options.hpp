@@ -28,6 +28,7 @@ class SceneOptions {
   [[nodiscard]] compare::CalibratedRod calibrated() const;
   [[nodiscard]] const compare::SolveOptions& solve() const { return solve_; }
   [[nodiscard]] std::vector<compare::Material> materials() const;
+  [[nodiscard]] bool gives_points() const { return points_ > 0; }
 
  private:
   void apply(compare::Scene& scene) const;
@@ -46,16 +47,13 @@ class SceneOptions {
 };
 
 /// Options --explain and --target-error.
-class PlanOptions {
- public:
-  void add_to(Command& command);
+struct PlanOptions {
+  bool explain = false;
+  compare::PlanOptions plan;
 
-  [[nodiscard]] bool explain() const { return explain_; }
-  [[nodiscard]] const compare::PlanOptions& plan() const { return plan_; }
-
- private:
-  bool explain_ = false;
-  compare::PlanOptions plan_;
+  void add_to(Command& command) {
+    command.bind("--explain", explain, "--target-error", plan.target);
+  }
 };
 
 /// Reports on standard error the assumptions that were made to read a scene from a simulator's
