@@ -59,29 +59,23 @@ int height_of(const PictureRow& row) {
 /// gnuplot's point types of the marks, in the order of Mark.
 constexpr int point_types[] = {0, 2, 4, 5, 6, 7, 8, 10, 12};
 
-std::string line_style(const CurveStyle& look) {
-  return fmt::format("linewidth {} dashtype {}", look.width, static_cast<int>(look.dashes) + 1);
-}
-
-std::string mark_style(const CurveStyle& look) {
-  return fmt::format("pointtype {} pointsize {}", point_types[static_cast<std::size_t>(look.mark)],
-                     look.mark_size);
-}
-
-std::string fill_style(const CurveStyle& look) {
-  return fmt::format("fillstyle solid 1 {} fillcolor rgb '{}'",
-                     look.width > 0 ? fmt::format("border linecolor rgb '{}'", look.colour)
-                                    : std::string("noborder"),
-                     look.fill);
-}
-
 std::string style_of(const CurveStyle& look) {
-  if (!look.fill.empty()) return "with filledcurves closed " + fill_style(look);
+  const std::string colour = fmt::format("linecolor rgb '{}'", look.colour);
   const bool has_line = look.width > 0;
-  const bool has_marks = look.mark != Mark::none;
-  return fmt::format("with {}{} linecolor rgb '{}' {} {}", has_line ? "lines" : "",
-                     has_marks ? "points" : "", look.colour, has_line ? line_style(look) : "",
-                     has_marks ? mark_style(look) : "");
+  if (!look.fill.empty()) {
+    return fmt::format("with filledcurves closed fillstyle solid 1 {} fillcolor rgb '{}'",
+                       has_line ? "border " + colour : "noborder", look.fill);
+  }
+  const std::string line = has_line ? fmt::format("linewidth {} dashtype {}", look.width,
+                                                  static_cast<int>(look.dashes) + 1)
+                                    : std::string();
+  const std::string marks =
+      look.mark != Mark::none
+          ? fmt::format("pointtype {} pointsize {}",
+                        point_types[static_cast<std::size_t>(look.mark)], look.mark_size)
+          : std::string();
+  return fmt::format("with {}{} {} {} {}", has_line ? "lines" : "", marks.empty() ? "" : "points",
+                     colour, line, marks);
 }
 
 /// Size of a picture [pixels].
