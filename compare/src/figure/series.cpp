@@ -75,7 +75,6 @@ Series within(Series outline, const View& view, const std::array<double, 2>& low
     outline.points = clipped(outline.points, axes[i], low[i], -1);
     outline.points = clipped(outline.points, axes[i], high[i], 1);
   }
-  outline.arc_length.assign(static_cast<std::size_t>(outline.points.cols()), NAN);
   return outline;
 }
 
@@ -142,8 +141,7 @@ std::optional<Series> straight_rod_series(const Scene& scene) {
   return Series{.id = "unbent",
                 .title = "the unbent rod",
                 .look = {.colour = "#808080", .dashes = Dashes::dash_dotted},
-                .points = *straight,
-                .arc_length = {0, scene.length}};
+                .points = *straight};
 }
 
 std::vector<Series> gripper_series(const Scene& scene) {
@@ -156,13 +154,11 @@ std::vector<Series> gripper_series(const Scene& scene) {
   for (std::size_t i = 0; i < scene.grippers.size(); ++i) {
     const Gripper& gripper = scene.grippers[i];
     grips.points.col(static_cast<Eigen::Index>(i)) = gripper.position;
-    grips.arc_length.push_back(gripper.at);
     if (!gripper.direction) continue;
     Series clamp{.id = fmt::format("clamp_{}", i + 1), .look = {.colour = "#909090", .width = 6}};
     const Eigen::Vector3d along = clamp_stub_length * scene.length * *gripper.direction;
     clamp.points.resize(3, 2);
     clamp.points << gripper.position - along, gripper.position + along;
-    clamp.arc_length = {gripper.at, gripper.at};
     all.push_back(std::move(clamp));
   }
   all.push_back(std::move(grips));
@@ -176,15 +172,16 @@ std::optional<Series> contact_series(const std::vector<energy_model::ContactPart
   Series series{.id = "contact",
                 .title = "where the rod itself touches",
                 .look = {.colour = "#207A34", .width = 0, .mark = Mark::dot, .mark_size = 0.45}};
+  std::vector<double> touched;
   for (const energy_model::ContactPart& contact : contacts) {
     const double lies = contact.end - contact.begin;
     const int steps = static_cast<int>(std::ceil(lies / (largest_sample_distance * length)));
     for (int i = 0; i <= steps; ++i) {
-      series.arc_length.push_back(contact.begin + (steps > 0 ? lies * i / steps : 0));
+      touched.push_back(contact.begin + (steps > 0 ? lies * i / steps : 0));
     }
   }
-  if (series.arc_length.empty()) return std::nullopt;
-  series.points = rod(series.arc_length);
+  if (touched.empty()) return std::nullopt;
+  series.points = rod(touched);
   return series;
 }
 
@@ -211,7 +208,6 @@ std::vector<Series> obstacle_series(const Scene& scene, const std::vector<View>&
       series.points = right * visible.row(0) + up * visible.row(1);
       series.points += (Eigen::Vector3d::Ones() - right - up).cwiseProduct(body.centre()) *
                        Eigen::RowVectorXd::Ones(visible.cols());
-      series.arc_length.assign(static_cast<std::size_t>(visible.cols()), NAN);
       all.push_back(std::move(series));
     }
   }

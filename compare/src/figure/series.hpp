@@ -23,9 +23,9 @@ struct Series {
   std::string id;     ///< name of the curve in the script
   std::string title;  ///< text in the legend; empty: no entry
   CurveStyle look;
-  Eigen::Matrix3Xd points;  ///< [m]; a column of NaN interrupts the line
-  std::vector<double> arc_length;
-  std::vector<double> curvature;  ///< empty if not shown; NaN where it is not defined
+  Eigen::Matrix3Xd points;         ///< [m]; a column of NaN interrupts the line
+  std::vector<double> arc_length;  ///< of the points [m]; only for a series with curvature
+  std::vector<double> curvature;   ///< empty if not shown; NaN where it is not defined
   /// Index of the only view that shows the series, without extending its limits; -1: all views.
   int view = -1;
 };

@@ -19,8 +19,7 @@ Series worst_point(const ShapeCheck& check) {
           .title = fmt::format("worst: point {}, {:.4g} mm", check.worst_point,
                                check.deviation.max_m * 1e3),
           .look = worst_point_style(),
-          .points = check.worst_position,
-          .arc_length = {check.deviation.max_at_m}};
+          .points = check.worst_position};
 }
 
 Figure distance_figure(const Scene& scene, const ShapeCheck& check,
@@ -66,8 +65,6 @@ Series distance_series(const Shape& file, const Shape& rod) {
     series.points.col(3 * i) = rod.points.col(i);
     series.points.col(3 * i + 1) = file.points.col(i);
     series.points.col(3 * i + 2).setConstant(NAN);
-    const double s = rod.arc_length[static_cast<std::size_t>(i)];
-    series.arc_length.insert(series.arc_length.end(), {s, s, s});
   }
   return series;
 }
@@ -79,8 +76,7 @@ Series file_series(const Shape& file) {
                    .dashes = Dashes::dashed,
                    .mark = Mark::dot,
                    .mark_size = 0.5},
-          .points = file.points,
-          .arc_length = file.arc_length};
+          .points = file.points};
 }
 
 void add_levels(Panel& panel, double rms_m, std::optional<double> allowed_m, double largest_m,

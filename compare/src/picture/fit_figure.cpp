@@ -12,17 +12,13 @@ namespace {
 Figure shape_figure(const Scene& scene, const FittedShape& shape, std::size_t number) {
   const std::vector<View> views = views_of(scene, shape.rod.points);
   std::vector<Series> all = obstacle_series(scene, views, shape.rod.points);
-  all.push_back({.id = "rod",
-                 .title = "the fitted rod",
-                 .look = {.width = 2},
-                 .points = shape.rod.points,
-                 .arc_length = shape.rod.arc_length});
+  all.push_back(
+      {.id = "rod", .title = "the fitted rod", .look = {.width = 2}, .points = shape.rod.points});
   all.push_back({.id = "file",
                  .title = fmt::format("points of shape {}, RMS {:.4g} mm", number,
                                       shape.alignment.rms_m * 1e3),
                  .look = {.colour = "#B34700", .width = 0, .mark = Mark::dot, .mark_size = 0.6},
-                 .points = shape.alignment.shape.points,
-                 .arc_length = shape.alignment.shape.arc_length});
+                 .points = shape.alignment.shape.points});
   for (Series& gripper : gripper_series(scene)) all.push_back(std::move(gripper));
   return {.title = shape.scene, .panels = shape_panels({views, std::move(all)})};
 }

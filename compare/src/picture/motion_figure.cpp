@@ -26,7 +26,6 @@ Series worst_point(const MotionCheck& check) {
   for (std::size_t i = 0; i < shapes.recorded.arc_length.size(); ++i) {
     if (shapes.recorded.arc_length[i] != worst.largest_at_m) continue;
     series.points = shapes.recorded.points.col(static_cast<Eigen::Index>(i));
-    series.arc_length = {worst.largest_at_m};
   }
   return series;
 }
@@ -84,15 +83,13 @@ Drawing worst_frame_drawing(const MotionCheck& check) {
                    .title = fmt::format("the rod {:.4g} ms {}", std::abs(check.lag) * 1e3,
                                         check.lag > 0 ? "earlier" : "later"),
                    .look = {.colour = green, .width = 2, .dashes = Dashes::dashed},
-                   .points = shapes.rod_at_other_time->points,
-                   .arc_length = shapes.rod_at_other_time->arc_length});
+                   .points = shapes.rod_at_other_time->points});
   }
   all.push_back(
       {.id = "rod",
        .title = check.model == MotionModel::at_rest ? "the rod at rest" : "the rod with inertia",
        .look = {.width = 2},
-       .points = shapes.rod.points,
-       .arc_length = shapes.rod.arc_length});
+       .points = shapes.rod.points});
   all.push_back(file_series(shapes.recorded));
   for (Series& gripper : gripper_series(now)) all.push_back(std::move(gripper));
   all.push_back(worst_point(check));

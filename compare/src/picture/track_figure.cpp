@@ -100,33 +100,29 @@ Cells cells_for(const Eigen::Matrix3Xd& points, const View& view, int count) {
 /// Returns the series that a cell shows.
 std::vector<Series> series_of(const Scene& now, const TrackShapes& shapes, std::size_t index,
                               const View& view, const Cells& cells) {
-  const std::vector<double>& arc_length = shapes.track.arc_length;
   const TrackFrame& frame = shapes.track.frames[index];
   std::vector<Series> all;
   for (Series& outline : obstacle_series(now, {view}, frame.shape.points)) {
     Series visible = within(std::move(outline), view, cells.least,
                             {cells.least[0] + cells.size[0], cells.least[1] + cells.size[1]});
-    if (!visible.arc_length.empty()) all.push_back(std::move(visible));
+    if (visible.points.cols() > 0) all.push_back(std::move(visible));
   }
   if (frame.force) {
     all.push_back({.id = "force",
                    .title = "force model, on the way",
                    .look = {.colour = "#B34700", .width = 1.5, .dashes = Dashes::dashed},
-                   .points = frame.force->shape.points,
-                   .arc_length = frame.force->shape.arc_length});
+                   .points = frame.force->shape.points});
   }
   if (shapes.has_moving(index)) {
     all.push_back({.id = "moving",
                    .title = "the rod with inertia",
                    .look = {.colour = "#0059A8", .width = 1.5},
-                   .points = shapes.moving->frames[index].points,
-                   .arc_length = arc_length});
+                   .points = shapes.moving->frames[index].points});
   }
   all.push_back({.id = "energy",
                  .title = "energy model (the rod itself), at rest",
                  .look = {.width = 2},
-                 .points = frame.shape.points,
-                 .arc_length = arc_length});
+                 .points = frame.shape.points});
   const Shape& shape = frame.shape;
   const RodPoints points = [&](const std::vector<double>& s) { return resample(shape, s).points; };
   if (auto contact = contact_series(frame.contacts, points, now.length)) {
