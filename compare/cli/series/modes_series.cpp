@@ -27,10 +27,8 @@ Json mode_json(const SceneMode& mode, const std::vector<double>& s) {
                  {"plane", to_string(mode.rod.plane)},
                  {"from_m", mode.rod.begin},
                  {"to_m", mode.rod.end}};
-  result["polygon_frequency_Hz"] =
-      mode.polygon_omega ? Json(hertz(*mode.polygon_omega)) : Json(nullptr);
-  result["polygon_likeness"] =
-      mode.polygon_omega ? Json(mode.polygon_kinetic_share) : Json(nullptr);
+  result["polygon_frequency_Hz"] = json_or_null(mode.polygon_omega, hertz);
+  result["polygon_likeness"] = mode.polygon_omega ? Json(mode.polygon_kinetic_share) : Json();
   result["stepped"] = json_or_null(mode.stepped, [](const auto& stepped) -> Json {
     return {{"frequency_Hz", hertz(stepped.omega)},
             {"damping_ratio", stepped.damping},

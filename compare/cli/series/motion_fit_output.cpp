@@ -21,9 +21,6 @@ Json motion_number_json(const MotionNumber& number) {
 }  // namespace
 
 compare::Document motion_fit_document(const compare::MotionFit& fit, const compare::Scene& scene) {
-  const auto optional = [](const std::optional<MotionNumber>& number) {
-    return number ? motion_number_json(*number) : Json(nullptr);
-  };
   const auto marker_json = [](const compare::PartError& marker) -> Json {
     return {{"s_m", marker.from_m}, {"rms_m", marker.rms_m}};
   };
@@ -49,9 +46,9 @@ compare::Document motion_fit_document(const compare::MotionFit& fit, const compa
                  {"not_identified", fit.not_identified},
                  {"stiffness", stiffness},
                  {"stiffness_over_mass_m4_per_s2", motion_number_json(fit.stiffness)},
-                 {"damping_s", optional(fit.material)},
-                 {"drag_N_s_per_m2", optional(fit.air)},
-                 {"quadratic_drag_N_s2_per_m3", optional(fit.quadratic)},
+                 {"damping_s", json_or_null(fit.material, motion_number_json)},
+                 {"drag_N_s_per_m2", json_or_null(fit.air, motion_number_json)},
+                 {"quadratic_drag_N_s2_per_m3", json_or_null(fit.quadratic, motion_number_json)},
                  {"noise_m", fit.noise},
                  {"coordinates", fit.coordinates},
                  {"effective_coordinates", fit.effective_coordinates},

@@ -10,14 +10,9 @@
 #include "series/study_output.hpp"
 
 namespace dlo::cli {
-namespace {
 
-using compare::PaperReport;
-using compare::PaperWeight;
-
-}  // namespace
-
-compare::Document paper_document(const PaperReport& report, const compare::MovingReport& moving) {
+compare::Document paper_document(const compare::PaperReport& report,
+                                 const compare::MovingReport& moving) {
   Json tables = json_list(report.tables, [&](const compare::TableRow& row) -> Json {
     return {{"table", row.table},
             {"quantity", row.quantity},
@@ -38,7 +33,8 @@ compare::Document paper_document(const PaperReport& report, const compare::Movin
       creep.push_back(std::move(row));
     }
     Json rest = comparison_json(entry.rest);
-    rest["point_weight"] = entry.weight == PaperWeight::printed ? "printed" : "rho A l g / N";
+    rest["point_weight"] =
+        entry.weight == compare::PaperWeight::printed ? "printed" : "rho A l g / N";
     rest["time_at_one_third_s"] = entry.time_at_one_third();
     rest["modulus_against_time"] = std::move(creep);
     cases.push_back(std::move(rest));

@@ -1,7 +1,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <optional>
 #include <utility>
 
 #include "base/text.hpp"
@@ -21,11 +20,10 @@ long count(const std::vector<RegressionResult>& results, RegressionVerdict verdi
                        [verdict](const auto& result) { return result.verdict == verdict; });
 }
 
-Json errors_json(const std::optional<compare::ShapeErrors>& errors) {
-  if (!errors) return nullptr;
-  Json result = {{"rms_over_length", errors->rms}, {"max_over_length", json_or_null(errors->max)}};
-  result["tip_over_length"] = json_or_null(errors->tip);
-  return result;
+Json errors_json(const compare::ShapeErrors& errors) {
+  return {{"rms_over_length", errors.rms},
+          {"max_over_length", json_or_null(errors.max)},
+          {"tip_over_length", json_or_null(errors.tip)}};
 }
 
 std::string result_text(const RegressionResult& result, const std::string& file) {
@@ -88,8 +86,8 @@ Json regression_json(const std::vector<RegressionResult>& results, bool good) {
   Json cases = json_list(results, [&](const RegressionResult& result) -> Json {
     return {{"case", result.name},
             {"verdict", compare::to_string(result.verdict)},
-            {"baseline", errors_json(result.expected)},
-            {"measured", errors_json(result.measured)},
+            {"baseline", json_or_null(result.expected, errors_json)},
+            {"measured", json_or_null(result.measured, errors_json)},
             {"message", result.message}};
   });
   return {{"schema", "dlo/regress/1"},
