@@ -64,15 +64,8 @@ std::string option_words(const compare::FitAlternative& alternative) {
   return out.empty() ? out : out.substr(1);
 }
 
-namespace {
-
-using compare::append;
-using compare::Json;
-
-}  // namespace
-
-Json chains_json(const std::vector<compare::ChainSprings>& chains) {
-  Json result = Json::array();
+compare::Json chains_json(const std::vector<compare::ChainSprings>& chains) {
+  compare::Json result = compare::Json::array();
   for (const compare::ChainSprings& chain : chains) {
     result.push_back({{"scene", chain.scene},
                       {"clamp", compare::to_string(chain.clamp)},
@@ -85,7 +78,7 @@ Json chains_json(const std::vector<compare::ChainSprings>& chains) {
     if (!chain.joints.empty()) {
       result.back()["segment_lengths_m"] = chain.segment_lengths;
       result.back()["joints"] =
-          compare::json_list(chain.joints, [](const compare::ChainJoint& joint) -> Json {
+          compare::json_list(chain.joints, [](const compare::ChainJoint& joint) -> compare::Json {
             return {{"at_m", joint.at},
                     {"joint_stiffness_Nm_per_rad", joint.stiffness},
                     {"binormal_stiffness_Nm_per_rad", joint.binormal_stiffness}};

@@ -54,8 +54,7 @@ Json sections_document(const Scene& scene) {
                        section.natural_curvature
                            ? Json{section.natural_curvature->x(), section.natural_curvature->y()}
                            : Json()},
-                      {"natural_twist_rad_per_m",
-                       section.natural_twist ? Json(*section.natural_twist) : Json()}});
+                      {"natural_twist_rad_per_m", json_or_null(section.natural_twist)}});
   }
   return result;
 }

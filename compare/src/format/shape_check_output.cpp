@@ -19,8 +19,7 @@ Json model_json(const compare::Scene& scene) {
           {"length_m", scene.length},
           {"mass_kg", scene.mass()},
           {"bending_stiffness_Nm2", scene.bending_stiffness()},
-          {"torsional_stiffness_Nm2",
-           scene.torsional_stiffness ? Json(*scene.torsional_stiffness) : Json()},
+          {"torsional_stiffness_Nm2", json_or_null(scene.torsional_stiffness)},
           {"notes", scene.model->notes}};
 }
 
@@ -34,19 +33,6 @@ void add_explanations(std::string& out, const compare::CheckResult& report) {
            explanation.cause);
   }
 }
-
-}  // namespace
-
-std::string markdown(const std::string& text) {
-  std::string out;
-  for (const char c : compare::display(text)) {
-    if (std::string_view("\\`*_[]<>|#&").find(c) != std::string_view::npos) out += '\\';
-    out += c;
-  }
-  return out;
-}
-
-namespace {
 
 Json shape_check_json(const compare::CheckResult& report) {
   const compare::ShapeCheck& c = report.check;
@@ -68,7 +54,7 @@ Json shape_check_json(const compare::CheckResult& report) {
                     {"largest_gap_m", c.largest_gap_m},
                     {"largest_gap_at_m", c.largest_gap_at_m},
                     {"excess_m", c.length_beyond_ends_m}};
-  result["hint"] = c.hint.empty() ? Json() : Json(c.hint);
+  result["hint"] = text_or_null(c.hint);
   result["deviation"] =
       compare::json_of(compare::numbers_of(compare::deviation_fields(), c.deviation));
   result["deviation"]["whole_rms_m"] = c.whole_rod_rms_m;
@@ -89,8 +75,7 @@ Json shape_check_json(const compare::CheckResult& report) {
                          {"default", report.tolerance.by_default}};
   result["judged_m"] = report.judgement.judged_m;
   result["verdict"] = compare::to_string(report.judgement.verdict);
-  const std::optional<bool>& significant = report.judgement.significant;
-  result["significant"] = significant ? Json(*significant) : Json();
+  result["significant"] = json_or_null(report.judgement.significant);
   result["deflection_m"] = report.deflection_m;
   result["reason"] = report.judgement.reason;
   result["explanations"] =
@@ -109,6 +94,15 @@ Json shape_check_json(const compare::CheckResult& report) {
 }
 
 }  // namespace
+
+std::string markdown(const std::string& text) {
+  std::string out;
+  for (const char c : compare::display(text)) {
+    if (std::string_view("\\`*_[]<>|#&").find(c) != std::string_view::npos) out += '\\';
+    out += c;
+  }
+  return out;
+}
 
 compare::Document shape_check_document(const CheckPage& page) {
   const compare::CheckResult& report = page.result;

@@ -43,39 +43,6 @@ bool is_judged(const compare::Solution& solution) {
          !std::isnan(solution.smallest_eigenvalue);
 }
 
-}  // namespace
-
-Eigen::Vector3d shown(const Eigen::Vector3d& vector, double magnitude) {
-  const double scale = std::max(magnitude, vector.norm());
-  return {compare::shown(vector.x(), scale), compare::shown(vector.y(), scale),
-          compare::shown(vector.z(), scale)};
-}
-
-void count_from_1(Json& contacts) {
-  for (Json& contact : contacts) contact["obstacle"] = contact["obstacle"].get<long>() + 1;
-}
-
-Json contacts_json(const std::vector<energy_model::ContactPart>& contacts) {
-  Json result = Json::array();
-  for (const energy_model::ContactPart& contact : contacts) {
-    Json entry = {{"obstacle", contact.obstacle},
-                  {"kind", energy_model::to_string(contact.kind)},
-                  {"from_m", contact.begin},
-                  {"to_m", contact.end},
-                  {"force_N", to_json(contact.force)}};
-    if (contact.kind == energy_model::ContactKind::lying) {
-      entry["moment_Nm"] = to_json(contact.moment);
-      entry["from_force_N"] = contact.begin_force;
-      entry["to_force_N"] = contact.end_force;
-      entry["largest_pressure_N_per_m"] = contact.largest_pressure;
-    }
-    result.push_back(std::move(entry));
-  }
-  return result;
-}
-
-namespace {
-
 /// Whether the search followed one branch while it increased the twist of the rod.
 bool follows_twist(const compare::Solution& solution) {
   return solution.model == compare::Model::energy && !solution.twists.empty();
@@ -109,6 +76,35 @@ void add_equilibria(Json& document, const compare::AllSolutions& all) {
 }
 
 }  // namespace
+
+Eigen::Vector3d shown(const Eigen::Vector3d& vector, double magnitude) {
+  const double scale = std::max(magnitude, vector.norm());
+  return {compare::shown(vector.x(), scale), compare::shown(vector.y(), scale),
+          compare::shown(vector.z(), scale)};
+}
+
+void count_from_1(Json& contacts) {
+  for (Json& contact : contacts) contact["obstacle"] = contact["obstacle"].get<long>() + 1;
+}
+
+Json contacts_json(const std::vector<energy_model::ContactPart>& contacts) {
+  Json result = Json::array();
+  for (const energy_model::ContactPart& contact : contacts) {
+    Json entry = {{"obstacle", contact.obstacle},
+                  {"kind", energy_model::to_string(contact.kind)},
+                  {"from_m", contact.begin},
+                  {"to_m", contact.end},
+                  {"force_N", to_json(contact.force)}};
+    if (contact.kind == energy_model::ContactKind::lying) {
+      entry["moment_Nm"] = to_json(contact.moment);
+      entry["from_force_N"] = contact.begin_force;
+      entry["to_force_N"] = contact.end_force;
+      entry["largest_pressure_N_per_m"] = contact.largest_pressure;
+    }
+    result.push_back(std::move(entry));
+  }
+  return result;
+}
 
 std::string solution_text(const compare::Solution& solution, const compare::Scene& scene) {
   Json all = solution_json(solution, scene, {});
