@@ -11,6 +11,57 @@
 #include "dlo/compare/error.hpp"
 
 namespace dlo::compare {
+namespace {
+
+std::size_t levenshtein(std::string_view a, std::string_view b) {
+  std::vector<std::size_t> row(b.size() + 1);
+  for (std::size_t j = 0; j <= b.size(); ++j) row[j] = j;
+  for (std::size_t i = 1; i <= a.size(); ++i) {
+    std::size_t diagonal = row[0];
+    row[0] = i;
+    for (std::size_t j = 1; j <= b.size(); ++j) {
+      const std::size_t replaced = diagonal + (a[i - 1] == b[j - 1] ? 0 : 1);
+      diagonal = row[j];
+      row[j] = std::min({replaced, row[j] + 1, row[j - 1] + 1});
+    }
+  }
+  return row.back();
+}
+
+constexpr std::string_view three_quotes = "\"\"\"";
+constexpr std::string_view three_apostrophes = "'''";
+
+/// Returns the length of the string literal with which `rest` begins. An unterminated literal ends
+/// with its line, or with the file; the parser then reports it.
+std::size_t toml_string_length(std::string_view rest) {
+  const char quote = rest.front();
+  const std::string_view three = quote == '"' ? three_quotes : three_apostrophes;
+  const bool many_lines = rest.starts_with(three);
+  const std::string_view end = many_lines ? three : three.substr(0, 1);
+  std::size_t at = end.size();
+  while (at < rest.size() && !rest.substr(at).starts_with(end)) {
+    if (rest[at] == '\n' && !many_lines) return at;
+    at += quote == '"' && rest[at] == '\\' ? 2 : 1;
+  }
+  at += end.size();
+  // Up to two quotes before the three closing ones belong to the string.
+  for (int more = 0; many_lines && more < 2 && at < rest.size() && rest[at] == quote; ++more) ++at;
+  return std::min(at, rest.size());
+}
+
+/// Returns the problem of an unquoted number that no double can represent, which a parser would
+/// read as zero or report unclearly; else an empty text.
+std::string number_problem(std::string_view rest) {
+  if (std::string_view("0123456789+-.").find(rest.front()) == std::string_view::npos) return "";
+  std::string number(rest.substr(0, rest.find_first_of(" \t\r\n,]}#=")));
+  number.erase(std::remove(number.begin(), number.end(), '_'), number.end());
+  const std::string_view digits = std::string_view(number).substr(number.front() == '+' ? 1 : 0);
+  const auto [value, length, error] = leading_number<double>(digits);
+  const bool beyond = length == digits.size() && error == std::errc::result_out_of_range;
+  return beyond ? out_of_range_message(number) : "";
+}
+
+}  // namespace
 
 std::string json_string(std::string_view text) {
   return nlohmann::json(text).dump(-1, ' ', false, nlohmann::json::error_handler_t::replace);
@@ -45,25 +96,6 @@ std::size_t control_character_length(std::string_view text, std::size_t at) {
   if (byte < 0x20 || byte == 0x7f) return 1;
   return byte == 0xc2 && static_cast<unsigned char>(text[at + 1]) < 0xa0 ? 2 : 0;
 }
-
-namespace {
-
-std::size_t levenshtein(std::string_view a, std::string_view b) {
-  std::vector<std::size_t> row(b.size() + 1);
-  for (std::size_t j = 0; j <= b.size(); ++j) row[j] = j;
-  for (std::size_t i = 1; i <= a.size(); ++i) {
-    std::size_t diagonal = row[0];
-    row[0] = i;
-    for (std::size_t j = 1; j <= b.size(); ++j) {
-      const std::size_t replaced = diagonal + (a[i - 1] == b[j - 1] ? 0 : 1);
-      diagonal = row[j];
-      row[j] = std::min({replaced, row[j] + 1, row[j - 1] + 1});
-    }
-  }
-  return row.back();
-}
-
-}  // namespace
 
 std::string nearest_word(std::string_view written, const std::vector<std::string>& words) {
   std::string nearest;
@@ -111,43 +143,6 @@ std::string wrap(const std::string& text, std::size_t indent, std::size_t width)
   }
   return out;
 }
-
-namespace {
-
-constexpr std::string_view three_quotes = "\"\"\"";
-constexpr std::string_view three_apostrophes = "'''";
-
-/// Returns the length of the string literal with which `rest` begins. An unterminated literal ends
-/// with its line, or with the file; the parser then reports it.
-std::size_t toml_string_length(std::string_view rest) {
-  const char quote = rest.front();
-  const std::string_view three = quote == '"' ? three_quotes : three_apostrophes;
-  const bool many_lines = rest.starts_with(three);
-  const std::string_view end = many_lines ? three : three.substr(0, 1);
-  std::size_t at = end.size();
-  while (at < rest.size() && !rest.substr(at).starts_with(end)) {
-    if (rest[at] == '\n' && !many_lines) return at;
-    at += quote == '"' && rest[at] == '\\' ? 2 : 1;
-  }
-  at += end.size();
-  // Up to two quotes before the three closing ones belong to the string.
-  for (int more = 0; many_lines && more < 2 && at < rest.size() && rest[at] == quote; ++more) ++at;
-  return std::min(at, rest.size());
-}
-
-/// Returns the problem of an unquoted number that no double can represent, which a parser would
-/// read as zero or report unclearly; else an empty text.
-std::string number_problem(std::string_view rest) {
-  if (std::string_view("0123456789+-.").find(rest.front()) == std::string_view::npos) return "";
-  std::string number(rest.substr(0, rest.find_first_of(" \t\r\n,]}#=")));
-  number.erase(std::remove(number.begin(), number.end(), '_'), number.end());
-  const std::string_view digits = std::string_view(number).substr(number.front() == '+' ? 1 : 0);
-  const auto [value, length, error] = leading_number<double>(digits);
-  const bool beyond = length == digits.size() && error == std::errc::result_out_of_range;
-  return beyond ? out_of_range_message(number) : "";
-}
-
-}  // namespace
 
 void require_toml_limits(std::string_view text, const std::string& file) {
   long line = 1;

@@ -10,6 +10,15 @@ double total_load(const Scene& scene) {
   return scene.weight_per_length().norm() * scene.length + scene.total_load_magnitude();
 }
 
+std::vector<std::size_t> obstacles_within(const Scene& scene, double distance) {
+  const std::vector<double> clearances = obstacle_clearances(scene);
+  std::vector<std::size_t> result;
+  for (std::size_t i = 0; i < clearances.size(); ++i) {
+    if (clearances[i] <= distance) result.push_back(i);
+  }
+  return result;
+}
+
 }  // namespace
 
 std::vector<const Gripper*> grippers_by_arc_length(const Scene& scene) {
@@ -43,19 +52,6 @@ std::vector<double> obstacle_clearances(const Scene& scene) {
   }
   return clearances;
 }
-
-namespace {
-
-std::vector<std::size_t> obstacles_within(const Scene& scene, double distance) {
-  const std::vector<double> clearances = obstacle_clearances(scene);
-  std::vector<std::size_t> result;
-  for (std::size_t i = 0; i < clearances.size(); ++i) {
-    if (clearances[i] <= distance) result.push_back(i);
-  }
-  return result;
-}
-
-}  // namespace
 
 std::vector<std::size_t> obstacles_in_reach(const Scene& scene) {
   constexpr double rounding = 1e-9;
