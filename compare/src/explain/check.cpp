@@ -30,7 +30,7 @@ ShapeTestOutcome test_shape(const Shape& shape, const Scene& scene, ToleranceSha
   MeasuredShape measured;
   try {
     measured = shape_of(shape.points, shape.arc_length, "the shape");
-    (void)file_arc_lengths(measured, scene.length);
+    (void)shape_of_file(measured, scene.length);
   } catch (const InputError& error) {
     return {false, error.what()};
   }

@@ -56,15 +56,11 @@ Aligner::Aligner(const MeasuredShape& shape, double length, const AlignOptions& 
                                  shape.file, shape.points.cols()));
   }
   rule_ = arc_length_rule(shape, options.arc_lengths);
-  FilePoints& along = file_points_[0];
-  along.points = shape.points;
+  Shape& along = file_points_[0];
   if (rule_ == ArcLengths::file) {
-    along.arc_length = file_arc_lengths(shape, length);
-    if (along.arc_length.front() > along.arc_length.back()) {
-      std::reverse(along.arc_length.begin(), along.arc_length.end());
-      along.points = along.points.rowwise().reverse().eval();
-    }
+    along = shape_of_file(shape, length);
   } else {
+    along.points = shape.points;
     along.arc_length = arc_lengths_along(along.points);
     const double total = along.arc_length.back();
     covers_whole_rod_ = total >= (1 - whole_rod_slack) * length;
@@ -80,7 +76,7 @@ Aligner::Aligner(const MeasuredShape& shape, double length, const AlignOptions& 
   file_points_[1].arc_length = mirrored(along.arc_length, end);
 }
 
-Aligner::FilePoints Aligner::stretched_to_rod(FilePoints way) const {
+Shape Aligner::stretched_to_rod(Shape way) const {
   const double first = way.arc_length.front();
   const double total = way.arc_length.back() - first;
   for (double& s : way.arc_length) s = std::min((s - first) / total * length_, length_);
@@ -127,7 +123,7 @@ RigidMotion Aligner::closest_pose(const Eigen::Matrix3Xd& from, const Eigen::Mat
   return pose;
 }
 
-Aligner::Placement Aligner::fit_pose_at_given_arc_lengths(const FilePoints& way,
+Aligner::Placement Aligner::fit_pose_at_given_arc_lengths(const Shape& way,
                                                           const Curve& curve) const {
   const Eigen::Matrix3Xd reference = curve.points(way.arc_length);
   Placement placed;
@@ -138,11 +134,10 @@ Aligner::Placement Aligner::fit_pose_at_given_arc_lengths(const FilePoints& way,
   return placed;
 }
 
-Aligner::FilePoints Aligner::thinned(const FilePoints& way) {
+Shape Aligner::thinned(const Shape& way) {
   const Eigen::Index every = (way.points.cols() + most_coarse_points - 1) / most_coarse_points;
   const Eigen::Index count = (way.points.cols() - 1) / every + 1;
-  FilePoints result{Eigen::Matrix3Xd(3, count),
-                    std::vector<double>(static_cast<std::size_t>(count))};
+  Shape result{std::vector<double>(static_cast<std::size_t>(count)), Eigen::Matrix3Xd(3, count)};
   for (Eigen::Index i = 0; i < count; ++i) {
     result.points.col(i) = way.points.col(i * every);
     result.arc_length[static_cast<std::size_t>(i)] =
@@ -151,9 +146,9 @@ Aligner::FilePoints Aligner::thinned(const FilePoints& way) {
   return result;
 }
 
-std::vector<Aligner::Placement> Aligner::coarse_placements(const FilePoints& way,
+std::vector<Aligner::Placement> Aligner::coarse_placements(const Shape& way,
                                                            const Curve& curve) const {
-  const FilePoints thin = thinned(way);
+  const Shape thin = thinned(way);
   const Eigen::Matrix3Xd& points = thin.points;
   const double slack = length_ - way.arc_length.back();
   const int places = slack > whole_rod_slack * length_ ? coarse_places_along : 1;
@@ -179,7 +174,7 @@ std::vector<Aligner::Placement> Aligner::coarse_placements(const FilePoints& way
   return result;
 }
 
-Aligner::Placement Aligner::refine_placement(const FilePoints& way, const Curve& curve,
+Aligner::Placement Aligner::refine_placement(const Shape& way, const Curve& curve,
                                              const RigidMotion& start) const {
   Placement placed;
   placed.pose = start;
@@ -259,16 +254,15 @@ void Aligner::gauss_newton(const Eigen::Matrix3Xd& points, const Curve& curve,
   }
 }
 
-Aligner::Placement Aligner::best_placement(const FilePoints& way, const Curve& curve) const {
+Aligner::Placement Aligner::best_placement(const Shape& way, const Curve& curve) const {
   if (!has_free_arc_lengths()) return fit_pose_at_given_arc_lengths(way, curve);
   if (options_.pose == PoseFreedom::known) return refine_placement(way, curve, RigidMotion());
   const Placement thinned_place = best_placement_of_thinned(way, curve);
   return is_dense() ? refine_placement(way, curve, thinned_place.pose) : thinned_place;
 }
 
-Aligner::Placement Aligner::best_placement_of_thinned(const FilePoints& way,
-                                                      const Curve& curve) const {
-  const FilePoints thin = thinned(way);
+Aligner::Placement Aligner::best_placement_of_thinned(const Shape& way, const Curve& curve) const {
+  const Shape thin = thinned(way);
   const std::vector<Placement> coarse = coarse_placements(way, curve);
   Placement best = refine_placement(thin, curve, coarse.front().pose);
   if (coarse.size() > 1) {
@@ -312,7 +306,7 @@ double Aligner::reported_distance(const Alignment& aligned, const Curve& curve,
                            : measured.rms_m;
 }
 
-Alignment Aligner::refine_by_reported_distance(const FilePoints& way, RigidMotion pose,
+Alignment Aligner::refine_by_reported_distance(const Shape& way, RigidMotion pose,
                                                const Curve& curve) const {
   constexpr int most_rounds = 50;
   Alignment best;

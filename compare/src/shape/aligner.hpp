@@ -24,11 +24,6 @@ class Aligner {
   [[nodiscard]] Eigen::Index free_coordinates() const;
 
  private:
-  /// The file's points by growing arc length, for one direction in which the file may run.
-  struct FilePoints {
-    Eigen::Matrix3Xd points;
-    std::vector<double> arc_length;  // arc lengths as given, or an estimate along the polyline
-  };
   struct Placement {
     RigidMotion pose;
     std::vector<double> arc_length;
@@ -40,17 +35,16 @@ class Aligner {
                                         const Eigen::Matrix3Xd& points) const;
   [[nodiscard]] RigidMotion closest_pose(const Eigen::Matrix3Xd& from, const Eigen::Matrix3Xd& to,
                                          const Eigen::VectorXd& weight) const;
-  [[nodiscard]] Placement fit_pose_at_given_arc_lengths(const FilePoints& way,
-                                                        const Curve& curve) const;
+  [[nodiscard]] Placement fit_pose_at_given_arc_lengths(const Shape& way, const Curve& curve) const;
   /// Whether thinned() omits points.
   [[nodiscard]] bool is_dense() const;
-  [[nodiscard]] static FilePoints thinned(const FilePoints& way);
-  [[nodiscard]] std::vector<Placement> coarse_placements(const FilePoints& way,
+  [[nodiscard]] static Shape thinned(const Shape& way);
+  [[nodiscard]] std::vector<Placement> coarse_placements(const Shape& way,
                                                          const Curve& curve) const;
-  [[nodiscard]] Placement refine_placement(const FilePoints& way, const Curve& curve,
+  [[nodiscard]] Placement refine_placement(const Shape& way, const Curve& curve,
                                            const RigidMotion& start) const;
   void gauss_newton(const Eigen::Matrix3Xd& points, const Curve& curve, Placement& placed) const;
-  [[nodiscard]] FilePoints stretched_to_rod(FilePoints way) const;
+  [[nodiscard]] Shape stretched_to_rod(Shape way) const;
   /// Returns the RMS distance that ShapeCheck reports for an aligned shape [m]. A file that is as
   /// long as the rod is compared with the whole rod.
   /// @param[out] measured  the distances
@@ -59,16 +53,15 @@ class Aligner {
   /// Iterates from a pose as long as reported_distance() decreases. This is needed because
   /// measure() redistributes points past an end, which is no part of the distances across the curve
   /// that refine_placement() minimises.
-  [[nodiscard]] Alignment refine_by_reported_distance(const FilePoints& way, RigidMotion pose,
+  [[nodiscard]] Alignment refine_by_reported_distance(const Shape& way, RigidMotion pose,
                                                       const Curve& curve) const;
   /// Returns the alignment with nearest points. A file that is as long as the rod is aligned by
   /// lengths along it instead, where that gives the smaller distance.
   [[nodiscard]] Alignment aligned(std::size_t way, const Placement& nearest,
                                   const Curve& curve) const;
   /// Returns the best alignment of the thinned points.
-  [[nodiscard]] Placement best_placement_of_thinned(const FilePoints& way,
-                                                    const Curve& curve) const;
-  [[nodiscard]] Placement best_placement(const FilePoints& way, const Curve& curve) const;
+  [[nodiscard]] Placement best_placement_of_thinned(const Shape& way, const Curve& curve) const;
+  [[nodiscard]] Placement best_placement(const Shape& way, const Curve& curve) const;
   [[nodiscard]] Alignment finished(const Placement& placed, bool reversed,
                                    const Curve& curve) const;
 
@@ -79,7 +72,9 @@ class Aligner {
   bool covers_whole_rod_ = false;
   // With weights by length: as long as the rod within end_slack, so its ends are those of the rod.
   bool has_rod_ends_ = false;
-  std::array<FilePoints, 2> file_points_;  // file runs along the rod, against it
+  /// Points of a file that runs along the rod, and of one that runs against it. Arc lengths are as
+  /// given, or estimates along the polyline.
+  std::array<Shape, 2> file_points_;
 };
 
 }  // namespace dlo::compare

@@ -65,15 +65,10 @@ Shape aligned_by_grippers(const MeasuredShape& shape, const Scene& scene, ArcLen
   constexpr int places_along = 21;
   const double length = scene.length;
   Shape along;
-  along.points = shape.points;
   if (rule == ArcLengths::file) {
-    along.arc_length = file_arc_lengths(shape, length);
-    const bool falls = along.arc_length.front() > along.arc_length.back();
-    if (falls) {
-      along.points = shape.points.rowwise().reverse();
-      std::reverse(along.arc_length.begin(), along.arc_length.end());
-    }
+    along = shape_of_file(shape, length);
   } else {
+    along.points = shape.points;
     along.arc_length = arc_lengths_along(shape.points);
     const double total = along.arc_length.back();
     const bool whole = rule == ArcLengths::chord || total > (1 - whole_rod_slack) * length;
@@ -103,13 +98,14 @@ ArcLengths arc_length_rule(const MeasuredShape& shape, ArcLengths asked) {
   return shape.arc_length.empty() ? ArcLengths::nearest : ArcLengths::file;
 }
 
-std::vector<double> file_arc_lengths(const MeasuredShape& shape, double length) {
+Shape shape_of_file(const MeasuredShape& shape, double length) {
   if (shape.arc_length.empty()) {
     throw InputError(fmt::format(
         "{}: no arc lengths in it (allowed: a column s, or arc lengths by chord or nearest)",
         shape.file));
   }
-  std::vector<double> s = shape.arc_length;
+  Shape along{shape.arc_length, shape.points};
+  std::vector<double>& s = along.arc_length;
   for (std::size_t i = 0; i < s.size(); ++i) {
     const std::optional<double> at = on_rod(s[i], length);
     if (!at) {
@@ -120,7 +116,11 @@ std::vector<double> file_arc_lengths(const MeasuredShape& shape, double length) 
     }
     s[i] = *at;
   }
-  return s;
+  if (s.front() > s.back()) {
+    std::reverse(s.begin(), s.end());
+    along.points = shape.points.rowwise().reverse();
+  }
+  return along;
 }
 
 double polyline_length(const Eigen::Matrix3Xd& points) { return chord_lengths(points).sum(); }

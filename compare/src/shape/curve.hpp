@@ -49,9 +49,9 @@ class Curve {
 /// Returns the rule that `automatic` stands for; returns any other rule unchanged.
 [[nodiscard]] ArcLengths arc_length_rule(const MeasuredShape& shape, ArcLengths asked);
 
-/// Returns the arc lengths of the file, limited to the rod [m].
+/// Returns the points by growing arc length, with the arc lengths of the file, limited to the rod.
 /// @throws InputError if the file has none, or if one is not on the rod
-[[nodiscard]] std::vector<double> file_arc_lengths(const MeasuredShape& shape, double length);
+[[nodiscard]] Shape shape_of_file(const MeasuredShape& shape, double length);
 
 /// Returns the sum of the chords [m]. @param points  [m], 3 x M, M >= 1
 [[nodiscard]] double polyline_length(const Eigen::Matrix3Xd& points);
@@ -71,7 +71,7 @@ class Curve {
 /// @param rule  result of arc_length_rule()
 /// @return the points by strictly growing arc length; only the first of several with one arc length
 /// is kept
-/// @throws InputError in the cases of file_arc_lengths()
+/// @throws InputError in the cases of shape_of_file()
 [[nodiscard]] Shape aligned_by_grippers(const MeasuredShape& shape, const Scene& scene,
                                         ArcLengths rule);
 
