@@ -35,24 +35,6 @@ const Json* find_row(const Json& table, const std::string& name) {
   return row == rows.end() ? nullptr : &*row;
 }
 
-/// Returns a part of the table of options as JSON.
-Json json_of(const toml::node& node) {
-  Json result;
-  if (const toml::table* const table = node.as_table()) {
-    for (const auto& [key, value] : *table) result[std::string(key.str())] = json_of(value);
-  } else if (const toml::array* const array = node.as_array()) {
-    for (const toml::node& value : *array) result.push_back(json_of(value));
-  } else {
-    node.visit([&result](const auto& value) {
-      if constexpr (toml::is_string<decltype(value)> || toml::is_number<decltype(value)> ||
-                    toml::is_boolean<decltype(value)>) {
-        result = value.get();
-      }
-    });
-  }
-  return result;
-}
-
 /// Returns a check that replaces the text of a number by its digits.
 /// @param read  may throw compare::InputError;  @param allowed  numbers for which `holds`, in words
 CLI::Validator number_check(std::function<double(const std::string&)> read,
@@ -256,7 +238,9 @@ const Json& option_table(const std::string& name) {
     end = std::min(text.find("\n[", end + 1), text.size());
   } while (text.substr(end).starts_with(fmt::format("\n[[{}.", name)));
   const toml::table parsed = toml::parse(text.substr(begin, end - begin));
-  return tables.emplace(name, json_of(*parsed.get(name))).first->second;
+  std::ostringstream json;
+  json << toml::json_formatter(*parsed.get(name));
+  return tables.emplace(name, Json::parse(json.str())).first->second;
 }
 
 std::vector<std::string> expand_option_groups(const std::string& text) {
