@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 #include <pybind11/stl.h>
 
+#include <functional>
 #include <limits>
 #include <sstream>
 
@@ -133,7 +134,7 @@ void bind_scene(py::module_& module) {
   refuse_new(bound, "dlo.Scene");
   const auto add = [&bound](const char* name, auto get, const char* words = "") {
     bound.def_property_readonly(
-        name, [get](const SceneData& data) { return get(data.scene); }, words);
+        name, [get](const SceneData& data) { return std::invoke(get, data.scene); }, words);
   };
   // Values of keys as the reader has them; Python has the words of their rows.
   add("name", [](const Scene& s) { return s.name; });
@@ -153,13 +154,9 @@ void bind_scene(py::module_& module) {
   add(
       "density", [](const Scene& s) { return s.material.density; },
       "Density of the material [kg/m^3]; 0: not known.");
-  add(
-      "mass", [](const Scene& s) { return s.mass(); }, "Mass of the rod, with sections [kg].");
-  add(
-      "gamma", [](const Scene& s) { return s.gamma(); },
-      "w l^3 / (EI) [-]: below 0.1 nearly straight, from 1000 on a rope.");
-  add(
-      "planar", [](const Scene& s) { return s.planar(); },
+  add("mass", &Scene::mass, "Mass of the rod, with sections [kg].");
+  add("gamma", &Scene::gamma, "w l^3 / (EI) [-]: below 0.1 nearly straight, from 1000 on a rope.");
+  add("planar", &Scene::planar,
       "Whether the rod stays in a plane that contains grips, forces and obstacles in reach.");
   static constexpr double none = std::numeric_limits<double>::quiet_NaN();
   add(
