@@ -38,10 +38,8 @@ double shown(double value, double magnitude) {
   return std::abs(value) <= error * magnitude ? 0.0 : value;
 }
 
-bool underflows(std::string_view number) { return decimal_exponent(number) < 0; }
-
 std::string out_of_range_message(std::string_view number) {
-  return underflows(number)
+  return decimal_exponent(number) < 0
              ? fmt::format("{} is too small (allowed: 0, or 2.3e-308 and more)", shortened(number))
              : fmt::format("{} is too large (allowed: up to 1.7e308)", shortened(number));
 }
@@ -50,7 +48,7 @@ std::optional<double> shape_number(std::string_view field) {
   if (field.starts_with('+')) field.remove_prefix(1);
   const auto [value, length, error] = leading_number<double>(field);
   if (length != field.size() || field.empty()) return std::nullopt;
-  if (error == std::errc::result_out_of_range) return underflows(field) ? 0.0 : INFINITY;
+  if (error == std::errc::result_out_of_range) return decimal_exponent(field) < 0 ? 0.0 : INFINITY;
   if (error != std::errc()) return std::nullopt;
   return value;
 }

@@ -44,10 +44,6 @@ template <typename Number>
 /// rounding only. JSON and CSV contain the unchanged number.
 [[nodiscard]] double shown(double value, double magnitude);
 
-/// Whether a number that leading_number() finds out of range is too small for a double, not too
-/// large. @param number  digits with at most one point, and an exponent
-[[nodiscard]] bool underflows(std::string_view number);
-
 /// Returns the error and the allowed range of a number that a double cannot represent.
 [[nodiscard]] std::string out_of_range_message(std::string_view number);
 

@@ -97,7 +97,7 @@ std::size_t control_character_length(std::string_view text, std::size_t at) {
   return byte == 0xc2 && static_cast<unsigned char>(text[at + 1]) < 0xa0 ? 2 : 0;
 }
 
-std::string nearest_word(std::string_view written, const std::vector<std::string>& words) {
+std::string did_you_mean(std::string_view written, const std::vector<std::string>& words) {
   std::string nearest;
   std::size_t least = std::min<std::size_t>(3, (written.size() + 1) / 2);
   for (const std::string& word : words) {
@@ -106,11 +106,6 @@ std::string nearest_word(std::string_view written, const std::vector<std::string
     least = distance;
     nearest = word;
   }
-  return nearest;
-}
-
-std::string did_you_mean(std::string_view written, const std::vector<std::string>& words) {
-  const std::string nearest = nearest_word(written, words);
   return nearest.empty() ? "" : ", did you mean " + nearest + "?";
 }
 
