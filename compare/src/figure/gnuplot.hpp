@@ -28,10 +28,6 @@ enum class PictureFormat { svg, png, pdf };
 /// Extensions of their files.
 inline constexpr const char* picture_extensions[] = {".svg", ".png", ".pdf"};
 
-/// Returns a text as a gnuplot string that is quoted so that its content cannot end it or be
-/// executed.
-[[nodiscard]] std::string gnuplot_string(const std::string& text);
-
 /// Returns the script that draws a picture. It contains all titles and numbers.
 [[nodiscard]] std::string picture_script(const Picture& picture, PictureFormat format,
                                          const std::string& output);

@@ -13,6 +13,25 @@ namespace {
 
 constexpr const char* zero_width_space = "\xe2\x80\x8b";
 
+/// Returns a text as a gnuplot string that is quoted so that its content cannot end it or be
+/// executed.
+std::string gnuplot_string(const std::string& text) {
+  // gnuplot writes texts into CDATA sections of the SVG, which "]]>" would end.
+  std::string shown = xml_text(text);
+  for (std::size_t at = 0; (at = shown.find("]]>", at)) != std::string::npos;) {
+    shown.insert(at + 2, zero_width_space);
+  }
+  // In single quotes an apostrophe has to be doubled, which gnuplot misreads at the beginning of a
+  // string, and a backtick runs a command. Octal escapes in double quotes avoid both.
+  if (shown.find_first_of("'`") == std::string::npos) return "'" + shown + "'";
+  std::string result = "\"";
+  for (const char c : shown) {
+    const bool special = c == '\'' || c == '`' || c == '"' || c == '\\';
+    result += special ? fmt::format("\\{:03o}", static_cast<unsigned>(c)) : std::string(1, c);
+  }
+  return result + "\"";
+}
+
 constexpr int title_line_pixels = 22;
 
 /// Divides a title between words into lines that fit above a figure: of at most 50 bytes, unless a
@@ -238,23 +257,6 @@ std::string terminal(PictureFormat format, const Canvas& canvas) {
 }
 
 }  // namespace
-
-std::string gnuplot_string(const std::string& text) {
-  // gnuplot writes texts into CDATA sections of the SVG, which "]]>" would end.
-  std::string shown = xml_text(text);
-  for (std::size_t at = 0; (at = shown.find("]]>", at)) != std::string::npos;) {
-    shown.insert(at + 2, zero_width_space);
-  }
-  // In single quotes an apostrophe has to be doubled, which gnuplot misreads at the beginning of a
-  // string, and a backtick runs a command. Octal escapes in double quotes avoid both.
-  if (shown.find_first_of("'`") == std::string::npos) return "'" + shown + "'";
-  std::string result = "\"";
-  for (const char c : shown) {
-    const bool special = c == '\'' || c == '`' || c == '"' || c == '\\';
-    result += special ? fmt::format("\\{:03o}", static_cast<unsigned>(c)) : std::string(1, c);
-  }
-  return result + "\"";
-}
 
 std::string picture_script(const Picture& picture, PictureFormat format,
                            const std::string& output) {
