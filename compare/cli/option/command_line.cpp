@@ -35,6 +35,23 @@ const Json* find_row(const Json& table, const std::string& name) {
   return row == rows.end() ? nullptr : &*row;
 }
 
+/// Returns the names of an option, such as "-o" and "--output", or that of an argument.
+std::vector<std::string> names_of(const CLI::Option& option) {
+  if (option.get_positional()) return {option.get_name(true)};
+  std::vector<std::string> names;
+  for (const std::string& name : option.get_snames()) names.push_back("-" + name);
+  for (const std::string& name : option.get_lnames()) names.push_back("--" + name);
+  return names;
+}
+
+/// Returns the commands in the order in which they were added.
+std::vector<const CLI::App*> commands_of(const CLI::App& app) { return app.get_subcommands({}); }
+
+/// Returns the arguments in the order in which they were added.
+std::vector<const CLI::Option*> arguments_of(const CLI::App& app) {
+  return app.get_options([](const CLI::Option* option) { return option->get_positional(); });
+}
+
 /// Returns a check that replaces the text of a number by its digits.
 /// @param read  may throw compare::InputError;  @param allowed  numbers for which `holds`, in words
 CLI::Validator number_check(std::function<double(const std::string&)> read,
@@ -326,20 +343,6 @@ void Command::runs(const std::function<void()>& run) {
     }
   }
   app_.callback(run);
-}
-
-std::vector<std::string> names_of(const CLI::Option& option) {
-  if (option.get_positional()) return {option.get_name(true)};
-  std::vector<std::string> names;
-  for (const std::string& name : option.get_snames()) names.push_back("-" + name);
-  for (const std::string& name : option.get_lnames()) names.push_back("--" + name);
-  return names;
-}
-
-std::vector<const CLI::App*> commands_of(const CLI::App& app) { return app.get_subcommands({}); }
-
-std::vector<const CLI::Option*> arguments_of(const CLI::App& app) {
-  return app.get_options([](const CLI::Option* option) { return option->get_positional(); });
 }
 
 std::vector<const CLI::Option*> options_of(const CLI::App& app) {

@@ -140,13 +140,7 @@ void add_command(CLI::App& app, const std::string& name, void (*run)(const Optio
   });
 }
 
-/// Returns the names of an option, such as "-o" and "--output", or that of an argument.
-[[nodiscard]] std::vector<std::string> names_of(const CLI::Option& option);
-
-/// Return commands, arguments and options in the order in which they were added; options without
-/// hidden ones.
-[[nodiscard]] std::vector<const CLI::App*> commands_of(const CLI::App& app);
-[[nodiscard]] std::vector<const CLI::Option*> arguments_of(const CLI::App& app);
+/// Returns the options, without hidden ones, in the order in which they were added.
 [[nodiscard]] std::vector<const CLI::Option*> options_of(const CLI::App& app);
 
 /// Returns a formatter for help texts with 80 columns.

@@ -30,6 +30,23 @@ std::optional<compare::PictureFormat> format_of(const std::string& file) {
   return static_cast<compare::PictureFormat>(found - std::begin(compare::picture_extensions));
 }
 
+/// Returns a picture drawn by gnuplot, as the content of its file.
+/// @throws compare::OutputError naming `option`
+std::string drawn_picture(const compare::Picture& picture, compare::PictureFormat format,
+                          const std::string& option) {
+  if (std::all_of(picture.rows.begin(), picture.rows.end(),
+                  [](const compare::PictureRow& row) { return row.empty(); })) {
+    throw compare::OutputError(option + ": there is nothing to draw");
+  }
+  const compare::TemporaryFolder folder = drawing_folder(option);
+  const std::string output =
+      std::string("plot") + compare::picture_extensions[static_cast<std::size_t>(format)];
+  compare::write_file(folder.path() / "plot.gp", compare::picture_script(picture, format, output));
+  const std::string failure = compare::run_script("plot.gp", output, folder.path());
+  if (!failure.empty()) throw compare::OutputError(option + ": " + failure);
+  return compare::read_file((folder.path() / output).string());
+}
+
 }  // namespace
 
 void PlotOptions::require_drawable() const {
@@ -49,21 +66,6 @@ void PlotOptions::require_drawable() const {
 void PlotOptions::draw(const std::function<compare::Picture()>& picture) const {
   if (!draws()) return;
   compare::write_file(file_, drawn_picture(picture(), *format_of(file_), "--plot " + file_));
-}
-
-std::string drawn_picture(const compare::Picture& picture, compare::PictureFormat format,
-                          const std::string& option) {
-  if (std::all_of(picture.rows.begin(), picture.rows.end(),
-                  [](const compare::PictureRow& row) { return row.empty(); })) {
-    throw compare::OutputError(option + ": there is nothing to draw");
-  }
-  const compare::TemporaryFolder folder = drawing_folder(option);
-  const std::string output =
-      std::string("plot") + compare::picture_extensions[static_cast<std::size_t>(format)];
-  compare::write_file(folder.path() / "plot.gp", compare::picture_script(picture, format, output));
-  const std::string failure = compare::run_script("plot.gp", output, folder.path());
-  if (!failure.empty()) throw compare::OutputError(option + ": " + failure);
-  return compare::read_file((folder.path() / output).string());
 }
 
 std::vector<compare::PagePicture> page_pictures(const compare::Picture& picture,

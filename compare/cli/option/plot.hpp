@@ -11,11 +11,6 @@
 
 namespace dlo::cli {
 
-/// Returns a picture drawn by gnuplot, as the content of its file.
-/// @throws compare::OutputError naming `option`
-[[nodiscard]] std::string drawn_picture(const compare::Picture& picture,
-                                        compare::PictureFormat format, const std::string& option);
-
 /// Draws each figure of a picture for a page. If a figure cannot be drawn, its `failure` states the
 /// reason.
 /// @param name  prefix of the pictures' identifiers, unique in the page
