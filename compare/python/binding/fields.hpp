@@ -19,13 +19,6 @@ namespace py = pybind11;
 
 using NumberDict = Typed<py::dict, "dict[str, float]">;
 
-/// Returns numbers as a dict.
-[[nodiscard]] inline NumberDict dict_of(const compare::Numbers& numbers) {
-  NumberDict dict;
-  for (const auto& [name, value] : numbers) dict[py::str(name)] = value;
-  return dict;
-}
-
 /// Binds an array as an attribute: a view into the object, which it keeps alive.
 /// @param of  returns a pointer to the numbers or points of an object of the class
 template <typename Object, typename... Options, typename Of>
@@ -56,7 +49,9 @@ void bind_fields(py::class_<Object, Options...>& bound, std::span<const compare:
       if constexpr (!std::is_same_v<Value, compare::Json>) {
         const auto value = [get, of](const Object& object) {
           if constexpr (std::is_same_v<Value, compare::Numbers>) {
-            return dict_of(get(of(object)));
+            NumberDict dict;
+            for (const auto& [name, number] : get(of(object))) dict[py::str(name)] = number;
+            return dict;
           } else {
             return get(of(object));
           }

@@ -9,22 +9,13 @@
 namespace dlo::python {
 namespace {
 
-py::object error_class(const char* name) { return py::module_::import("dlo._errors").attr(name); }
-
 void set_error(const char* name, const py::tuple& arguments) {
-  const py::object type = error_class(name);
+  const py::object type = py::module_::import("dlo._errors").attr(name);
   const py::object value = type(*arguments);
   PyErr_SetObject(type.ptr(), value.ptr());
 }
 
-}  // namespace
-
-void raise_convergence(const std::string& message, const py::object& result) {
-  set_error("ConvergenceError", py::make_tuple(message, result));
-  throw py::error_already_set();
-}
-
-void bind_errors(py::module_& /*module*/) {
+void translate_errors() {
   // NOLINTNEXTLINE(performance-unnecessary-value-param): the type is pybind11's
   py::register_exception_translator([](std::exception_ptr thrown) {
     try {
@@ -39,13 +30,20 @@ void bind_errors(py::module_& /*module*/) {
   });
 }
 
+}  // namespace
+
+void raise_convergence(const std::string& message, const py::object& result) {
+  set_error("ConvergenceError", py::make_tuple(message, result));
+  throw py::error_already_set();
+}
+
 }  // namespace dlo::python
 
 PYBIND11_MODULE(_dlo, module) {
   module.doc() = "What dlo computes, in C++; import dlo instead.";
   module.attr("__version__") = DLO_VERSION;
   dlo::python::stop_calls_at_exit(module);
-  dlo::python::bind_errors(module);
+  dlo::python::translate_errors();
   dlo::python::bind_scene(module);
   dlo::python::bind_result(module);
   dlo::python::bind_solve(module);

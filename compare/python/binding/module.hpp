@@ -11,7 +11,6 @@ namespace dlo::python {
 namespace py = pybind11;
 
 // Functions that bind the parts of the module, by subject.
-void bind_errors(py::module_& module);
 void bind_scene(py::module_& module);
 void bind_result(py::module_& module);
 void bind_solve(py::module_& module);

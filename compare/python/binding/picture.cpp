@@ -32,6 +32,24 @@ py::dict curve_dict(const compare::PlottedCurve& curve) {
                   "mark"_a = py::int_(static_cast<int>(look.mark)), "mark_size"_a = look.mark_size);
 }
 
+/// Returns a panel as _plot.py draws it.
+py::dict panel_dict(const compare::Panel& described) {
+  const compare::Panel panel = compare::laid_out(described);
+  py::list axes;
+  axes.append(axis_dict(panel.x, described.x));
+  axes.append(axis_dict(panel.y, described.y));
+  if (panel.z) axes.append(axis_dict(*panel.z, *described.z));
+  py::list curves;
+  for (const compare::PlottedCurve& curve : panel.curves) curves.append(curve_dict(curve));
+  py::list texts;
+  for (const compare::Text& text : panel.texts) {
+    texts.append(py::make_tuple(text.words, text.x, text.y, text.dx, text.dy));
+  }
+  return py::dict("size"_a = py::make_tuple(compare::figure_width, panel.full_height()),
+                  "upright"_a = py::int_(panel.upright), "equal"_a = py::bool_(panel.equal_aspect),
+                  "axes"_a = axes, "curves"_a = curves, "texts"_a = texts);
+}
+
 /// Returns a function that calls a Python function with the result and further arguments.
 auto in_python(const char* module, const char* function) {
   return [module, function](const py::args& arguments) {
@@ -77,23 +95,6 @@ compare::Panel Result::panel(std::optional<bool> in_space) const {
   const compare::Drawing drawn = drawing();
   return in_space.value_or(drawn.views.size() > 1) ? compare::spatial_panel(drawn)
                                                    : compare::shape_panels(drawn).front();
-}
-
-py::dict panel_dict(const compare::Panel& described) {
-  const compare::Panel panel = compare::laid_out(described);
-  py::list axes;
-  axes.append(axis_dict(panel.x, described.x));
-  axes.append(axis_dict(panel.y, described.y));
-  if (panel.z) axes.append(axis_dict(*panel.z, *described.z));
-  py::list curves;
-  for (const compare::PlottedCurve& curve : panel.curves) curves.append(curve_dict(curve));
-  py::list texts;
-  for (const compare::Text& text : panel.texts) {
-    texts.append(py::make_tuple(text.words, text.x, text.y, text.dx, text.dy));
-  }
-  return py::dict("size"_a = py::make_tuple(compare::figure_width, panel.full_height()),
-                  "upright"_a = py::int_(panel.upright), "equal"_a = py::bool_(panel.equal_aspect),
-                  "axes"_a = axes, "curves"_a = curves, "texts"_a = texts);
 }
 
 }  // namespace dlo::python

@@ -55,9 +55,6 @@ void refuse_new(Class& bound, const char* maker) {
       py::reinterpret_steal<py::object>(PyStaticMethod_New(py::object(refuse).ptr()));
 }
 
-/// Returns a panel as _plot.py draws it.
-[[nodiscard]] py::dict panel_dict(const compare::Panel& described);
-
 /// Result of a computation, from which Python's object is made. It never changes after its
 /// construction.
 struct Result {
