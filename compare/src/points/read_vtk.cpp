@@ -11,24 +11,6 @@
 namespace dlo::compare {
 namespace {
 
-/// Appends a cell to a polyline.
-/// @param cell  indices of its points, two or more
-/// @param where  "file" or "file:line"
-/// @throws InputError if the cell does not begin where the polyline ends, or has fewer than two
-/// points
-void join_cell(const std::vector<std::size_t>& cell, std::vector<std::size_t>& order,
-               const std::string& where) {
-  if (cell.size() < 2) {
-    throw InputError(fmt::format("{}: a line of fewer than two points", where));
-  }
-  if (!order.empty() && cell.front() != order.back()) {
-    throw InputError(fmt::format(
-        "{}: several separate lines (allowed: one polyline, or lines that follow on)", where));
-  }
-  order.insert(order.end(), cell.begin() + (order.empty() ? 0 : 1), cell.end());
-  require_point_count(order.size(), where);
-}
-
 /// Returns the points of a shape, with all other data per point, in the given order.
 RawShape in_order(const RawShape& points, const std::vector<std::size_t>& order) {
   RawShape result;
@@ -235,8 +217,17 @@ class VtkReader {
     return order;
   }
 
+  /// Appends a cell to a polyline.
+  /// @param cell  indices of its points, two or more
+  /// @throws InputError if the cell does not begin where the polyline ends, or has fewer than two
+  /// points
   void append(const std::vector<std::size_t>& cell, std::vector<std::size_t>& order) const {
-    join_cell(cell, order, fmt::format("{}:{}", file_, line_));
+    if (cell.size() < 2) fail("a line of fewer than two points");
+    if (!order.empty() && cell.front() != order.back()) {
+      fail("several separate lines (allowed: one polyline, or lines that follow on)");
+    }
+    order.insert(order.end(), cell.begin() + (order.empty() ? 0 : 1), cell.end());
+    require_point_count(order.size(), fmt::format("{}:{}", file_, line_));
   }
 
   std::string_view rest_;

@@ -70,6 +70,10 @@ void require_one_frame(const NpyArray& array, const ShapeName& name) {
                          quoted_piece(name.index), name.file));
 }
 
+/// Reads a NumPy array: M x 2 or M x 3 of any integer type or of 32 or 64 bit floating-point
+/// numbers, in any byte order and memory order. Of an array of frames, frames x M x 2 or frames x
+/// M x 3, it reads the frame that the name selects.
+/// @throws InputError naming the file
 RawShape points_of(const NpyArray& array, const ShapeName& name) {
   array.require_numbers();
   const std::vector<std::size_t>& n = array.shape();
@@ -215,16 +219,8 @@ double arc_length_unit(const RawShape& raw, const std::string& file, double unit
                   file, span * unit, polyline));
 }
 
-/// Reads a NumPy array: M x 2 or M x 3 of any integer type or of 32 or 64 bit floating-point
-/// numbers, in any byte order and memory order. Of an array of frames, frames x M x 2 or frames x
-/// M x 3, it reads the frame that the name selects (shape_name).
-/// @throws InputError naming the file
-RawShape read_npy_shape(std::string_view bytes, const std::string& file) {
-  return points_of(NpyArray(bytes, file), shape_name(file));
-}
-
 RawShape read_any_shape(std::string_view text, const std::string& file, double unit) {
-  if (text.starts_with(npy_magic)) return read_npy_shape(text, file);
+  if (text.starts_with(npy_magic)) return points_of(NpyArray(text, file), shape_name(file));
   refuse_archives(text, file);
   text = after_byte_order_mark(text);
   const std::size_t start = text.find_first_not_of(" \t\r\n");
