@@ -56,14 +56,6 @@ std::vector<compare::SweptField> swept_fields(const compare::Grid& grid) {
   return fields;
 }
 
-void plot(const SweepOptions& options, const compare::Sweep& sweep,
-          const std::vector<std::string>& rows) {
-  options.plot.draw([&] {
-    return compare::sweep_picture(swept_fields(sweep.grid()), sweep.header(), rows,
-                                  plotted_columns(options.model));
-  });
-}
-
 /// Returns the rows I, I + N, ... of --part I/N, counted from 1; all rows without --part.
 compare::RowRange chosen_rows(const std::string& part, std::int64_t rows) {
   if (part.empty()) return {0, rows};
@@ -137,7 +129,10 @@ void write_rows(const SweepOptions& options, const compare::Sweep& sweep,
     print_message("{}: {} of {} scenes have no result; the column status states the reason",
                   file ? options.output : "sweep", without_result, done);
   }
-  plot(options, sweep, drawn);
+  options.plot.draw([&] {
+    return compare::sweep_picture(swept_fields(sweep.grid()), sweep.header(), drawn,
+                                  plotted_columns(options.model));
+  });
 }
 
 /// Separates fields from files. One --vary may be followed by several fields; a word with "=" is a

@@ -47,10 +47,6 @@ def _causes(values: Any) -> list[tuple[str, float]]:
     return [(cause["cause"], cause["rms_m"]) for cause in values]
 
 
-def _as_it_is(value: Any) -> Any:
-    return value
-
-
 def _or_nan(value: Any) -> float:
     return math.nan if value is None else float(value)
 
@@ -180,7 +176,7 @@ class Check(Drawn):
         "verdict", str, '"pass", "fail", or "undetermined": within the tolerance, but the points do not determine the rod.'
     )
     significant = _at(
-        "significant", _as_it_is, "For a shape that passes: whether the rod without weight and loads would fail. "
+        "significant", lambda value: value, "For a shape that passes: whether the rod without weight and loads would fail. "
         "None if neither acts, or if the shape without them was not found."
     )
     deflection = _at(

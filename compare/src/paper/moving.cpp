@@ -19,9 +19,6 @@ constexpr double time_step = 28.0 / nominal_moving_steps;
 constexpr int frame_stride = 50;
 constexpr int first_seen_frame = static_cast<int>(movement_begins * 1000) + frame_stride / 2;
 
-/// Returns the distance of the clamp from the third point, half a segment along the rod [m].
-double clamp_distance() { return table_1().segment() / 2; }
-
 /// Returns the gripper's pose. At the beginning and the end of the movement its rates are those
 /// just after.
 /// @param time  [s]
@@ -56,7 +53,7 @@ energy_model::GripPose clamp_pose(const MovingExperiment& experiment,
   const MovingPose now = moving_pose(experiment, choices, time);
   const Eigen::Vector3d along = now.direction();
   const Eigen::Vector3d across(-along.y(), along.x(), 0);
-  const double lead = clamp_distance();
+  const double lead = table_1().segment() / 2;  // distance of the clamp from the third point [m]
   energy_model::GripPose pose;
   pose.position = now.position + lead * along;
   pose.velocity = now.velocity + lead * now.angle_rate * across;
