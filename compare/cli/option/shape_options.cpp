@@ -4,6 +4,7 @@
 
 #include "dlo/compare/error.hpp"
 #include "dlo/compare/shape_file.hpp"
+#include "shape/curve.hpp"
 #include "toml/quantity.hpp"
 
 namespace dlo::cli {
@@ -36,9 +37,7 @@ std::string ShapeOptions::unit_hint(double polyline_m, double length) const {
 
 void ShapeOptions::require_likely_unit(const compare::MeasuredShape& shape, double length) const {
   constexpr double unit_suspicion_ratio = 5;
-  const Eigen::Index segments = shape.points.cols() - 1;
-  const double polyline_m =
-      (shape.points.rightCols(segments) - shape.points.leftCols(segments)).colwise().norm().sum();
+  const double polyline_m = compare::polyline_length(shape.points);
   const std::string hint = unit_hint(polyline_m, length);
   const bool is_other = polyline_m > unit_suspicion_ratio * length || polyline_m < length / 50;
   if (!hint.empty() && is_other) {

@@ -47,12 +47,12 @@ MarkerMotion parse_markers(std::string_view text, const std::string& file) {
   return result;
 }
 
-bool has_marker_columns(std::string_view text, const std::string& file) {
-  std::optional<bool> found;
-  for_each_csv_row(text, file, {}, [&](const CsvRow& row) {
-    if (!found) found = std::ranges::find(row.fields, "time") != row.fields.end();
+bool has_column(std::string_view text, const std::string& file, std::string_view name) {
+  bool found = false;
+  for_each_csv_row(text, file, {.most_rows = 1}, [&](const CsvRow& row) {
+    found = std::ranges::find(row.fields, name) != row.fields.end();
   });
-  return found.value_or(false);
+  return found;
 }
 
 }  // namespace dlo::compare

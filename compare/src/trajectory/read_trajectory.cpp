@@ -70,19 +70,10 @@ Trajectory read_rows(StrictTable& table, std::vector<StrictTable>& rows, const P
   }
 }
 
-/// Whether a file's rows are those of markers, which have arc lengths.
-bool has_marker_rows(std::string_view text, const std::string& file) {
-  bool found = false;
-  for_each_csv_row(text, file, {.most_rows = 1}, [&found](const CsvRow& row) {
-    found = std::ranges::find(row.fields, "s") != row.fields.end();
-  });
-  return found;
-}
-
 /// Reads the poses of a file. @throws std::invalid_argument as smooth_poses()
 std::vector<Pose> file_poses(const std::string& text, const std::string& file, const PoseKeys& keys,
                              std::optional<double> cutoff) {
-  if (keys.at && has_marker_rows(text, file)) {
+  if (keys.at && has_column(text, file, "s")) {
     return poses_of_markers(parse_markers(text, file), *keys.at, cutoff);
   }
   const Trajectory given = parse_trajectory(text, file);
