@@ -8,9 +8,9 @@
 #include <limits>
 #include <numbers>
 #include <span>
-#include <utility>
 
 #include "base/number.hpp"
+#include "base/text.hpp"
 
 namespace dlo::compare {
 namespace {
@@ -73,23 +73,14 @@ std::span<const Unit> units(Dimension dimension) {
 /// Returns a unit in the spelling of the tables above: "*" and middle dots become blanks, raised
 /// digits "^2" and "^3", the micro sign "u" and the degree sign "deg".
 std::string plain_spelling(std::string_view written) {
-  constexpr std::pair<std::string_view, std::string_view> spellings[] = {
-      {"*", " "},         {"\xc2\xb7", " "}, {"\xe2\x8b\x85", " "}, {"\xc2\xb2", "^2"},
-      {"\xc2\xb3", "^3"}, {"\xc2\xb5", "u"}, {"\xce\xbc", "u"},     {"\xc2\xb0", "deg"}};
-  std::string plain;
-  while (!written.empty()) {
-    const auto* const found =
-        std::find_if(std::begin(spellings), std::end(spellings),
-                     [&](const auto& spelling) { return written.starts_with(spelling.first); });
-    if (found != std::end(spellings)) {
-      plain += found->second;
-      written.remove_prefix(found->first.size());
-    } else {
-      plain += written.front();
-      written.remove_prefix(1);
-    }
-  }
-  return plain;
+  return replace_placeholders(written, {{"*", " "},
+                                        {"\xc2\xb7", " "},
+                                        {"\xe2\x8b\x85", " "},
+                                        {"\xc2\xb2", "^2"},
+                                        {"\xc2\xb3", "^3"},
+                                        {"\xc2\xb5", "u"},
+                                        {"\xce\xbc", "u"},
+                                        {"\xc2\xb0", "deg"}});
 }
 
 /// Whether a text is the unit's name, or the name without its blank: "Nm". A name with an
