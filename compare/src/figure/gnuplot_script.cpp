@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "base/quote.hpp"
+#include "base/text.hpp"
 #include "figure/gnuplot.hpp"
 
 namespace dlo::compare {
@@ -17,19 +18,15 @@ constexpr const char* zero_width_space = "\xe2\x80\x8b";
 /// executed.
 std::string gnuplot_string(const std::string& text) {
   // gnuplot writes texts into CDATA sections of the SVG, which "]]>" would end.
-  std::string shown = xml_text(text);
-  for (std::size_t at = 0; (at = shown.find("]]>", at)) != std::string::npos;) {
-    shown.insert(at + 2, zero_width_space);
-  }
+  const std::string shown =
+      replace_placeholders(xml_text(text), {{"]]>", fmt::format("]]{}>", zero_width_space)}});
   // In single quotes an apostrophe has to be doubled, which gnuplot misreads at the beginning of a
   // string, and a backtick runs a command. Octal escapes in double quotes avoid both.
   if (shown.find_first_of("'`") == std::string::npos) return "'" + shown + "'";
-  std::string result = "\"";
-  for (const char c : shown) {
-    const bool special = c == '\'' || c == '`' || c == '"' || c == '\\';
-    result += special ? fmt::format("\\{:03o}", static_cast<unsigned>(c)) : std::string(1, c);
-  }
-  return result + "\"";
+  return "\"" +
+         replace_placeholders(shown,
+                              {{"'", "\\047"}, {"`", "\\140"}, {"\"", "\\042"}, {"\\", "\\134"}}) +
+         "\"";
 }
 
 constexpr int title_line_pixels = 22;
