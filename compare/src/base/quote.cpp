@@ -8,43 +8,20 @@
 #include "base/text.hpp"
 
 namespace dlo::compare {
+
 std::string xml_text(const std::string& text) {
   std::string result = valid_utf8(text);
   for (char& c : result) {
     if (static_cast<unsigned char>(c) < ' ' || c == '\x7f') c = ' ';
   }
-  for (const std::string_view no_character : {"\xef\xbf\xbe", "\xef\xbf\xbf"}) {
-    for (std::size_t at = 0; (at = result.find(no_character, at)) != std::string::npos;) {
-      result.replace(at, no_character.size(), "\xef\xbf\xbd");
-    }
-  }
-  return result;
+  return replace_placeholders(result,
+                              {{"\xef\xbf\xbe", "\xef\xbf\xbd"}, {"\xef\xbf\xbf", "\xef\xbf\xbd"}});
 }
 
 std::string escape_markup(const std::string& text) {
-  std::string result;
-  for (const char c : xml_text(text)) {
-    switch (c) {
-      case '&':
-        result += "&amp;";
-        break;
-      case '<':
-        result += "&lt;";
-        break;
-      case '>':
-        result += "&gt;";
-        break;
-      case '"':
-        result += "&quot;";
-        break;
-      case '\'':
-        result += "&#39;";
-        break;
-      default:
-        result += c;
-    }
-  }
-  return result;
+  return replace_placeholders(
+      xml_text(text),
+      {{"&", "&amp;"}, {"<", "&lt;"}, {">", "&gt;"}, {"\"", "&quot;"}, {"'", "&#39;"}});
 }
 
 std::string csv_field(const std::string& text) {
@@ -89,9 +66,7 @@ std::string shell_word(const std::string& word) {
                                           "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ"
                                           "0123456789._/-+:@%,=") == std::string::npos;
   if (plain) return word;
-  std::string quoted = "'";
-  for (const char c : display(word)) quoted += c == '\'' ? std::string("'\\''") : std::string(1, c);
-  return quoted + "'";
+  return "'" + replace_placeholders(display(word), {{"'", "'\\''"}}) + "'";
 }
 
 std::string printable_piece(std::string_view piece) {
