@@ -218,8 +218,8 @@ std::vector<std::string> option_names(const CLI::App& app) {
 /// Returns a message for words that CLI11 did not expect: an unknown option such as --modle, or an
 /// additional argument.
 std::string unexpected(const CLI::App& command, const std::vector<std::string>& words) {
-  const auto option = std::find_if(words.begin(), words.end(),
-                                   [](const std::string& word) { return word.starts_with('-'); });
+  const auto option =
+      std::ranges::find_if(words, [](const std::string& word) { return word.starts_with('-'); });
   const std::string& word = option != words.end() ? *option : words.front();
   const std::vector<std::string> names = option_names(command);
   const std::string written = word.substr(0, word.find('='));
@@ -362,7 +362,7 @@ void require_known_word(const CLI::App& app, const std::string& written) {
   } else {
     for (const CLI::App* command : commands_of(app)) names.push_back(command->get_name());
   }
-  if (std::find(names.begin(), names.end(), name) != names.end()) return;
+  if (std::ranges::find(names, name) != names.end()) return;
   throw compare::InputError(fmt::format(
       "unknown {} {}{} (allowed{}: {}{})", is_option ? "option" : "command", name,
       compare::did_you_mean(name, names), is_option ? " without a command" : "",
@@ -377,9 +377,8 @@ std::string parse_message(const CLI::App& app, const CLI::ParseError& error) {
   const std::vector<std::string> unexpected_words = app.remaining(true);
   // An unknown option explains the error better than an argument that is missing as its
   // consequence.
-  const bool unknown_option =
-      std::any_of(unexpected_words.begin(), unexpected_words.end(),
-                  [](const std::string& word) { return word.starts_with('-'); });
+  const bool unknown_option = std::ranges::any_of(
+      unexpected_words, [](const std::string& word) { return word.starts_with('-'); });
   const bool too_many = dynamic_cast<const CLI::ExtrasError*>(&error) != nullptr;
   if (unknown_option || (too_many && !unexpected_words.empty())) {
     return unexpected(command, unexpected_words);

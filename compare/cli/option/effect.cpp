@@ -44,8 +44,7 @@ bool is_given(const CLI::App& command, const std::string& name) {
 std::string condition_text(const OptionCondition& condition, const CLI::App& command,
                            const compare::ForceModelSettings* settings) {
   const auto contains = [&](const std::string& value) {
-    return std::find(condition.values.begin(), condition.values.end(), value) !=
-           condition.values.end();
+    return std::ranges::find(condition.values, value) != condition.values.end();
   };
   const bool is_law = condition.option == law_option;
   if (!is_law && condition.values.empty()) {
@@ -76,9 +75,8 @@ std::string no_effect_reason(const IneffectiveOptions& row, const CLI::App& comm
 }
 
 bool depends_on_law(const IneffectiveOptions& row) {
-  return std::any_of(
-      row.conditions.begin(), row.conditions.end(),
-      [](const OptionCondition& condition) { return condition.option == law_option; });
+  return std::ranges::find(row.conditions, law_option, &OptionCondition::option) !=
+         row.conditions.end();
 }
 
 }  // namespace

@@ -15,11 +15,6 @@ namespace {
 using compare::RegressionResult;
 using compare::RegressionVerdict;
 
-long count(const std::vector<RegressionResult>& results, RegressionVerdict verdict) {
-  return std::count_if(results.begin(), results.end(),
-                       [verdict](const auto& result) { return result.verdict == verdict; });
-}
-
 Json errors_json(const compare::ShapeErrors& errors) {
   return {{"rms_over_length", errors.rms},
           {"max_over_length", json_or_null(errors.max)},
@@ -39,7 +34,7 @@ std::string counts_text(const std::vector<RegressionResult>& results) {
        {RegressionVerdict::worse, RegressionVerdict::changed, RegressionVerdict::not_in_baseline,
         RegressionVerdict::not_measured, RegressionVerdict::not_solved, RegressionVerdict::better,
         RegressionVerdict::same}) {
-    const long number = count(results, verdict);
+    const long number = std::ranges::count(results, verdict, &RegressionResult::verdict);
     if (number == 0) continue;
     append(out, "{}{} {}", out.empty() ? "" : ", ", number, compare::to_string(verdict));
   }

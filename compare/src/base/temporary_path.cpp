@@ -37,8 +37,7 @@ void wait_shortly() {
 bool ends_process(int number) {
   constexpr std::array harmless_signals = {SIGCHLD, SIGCONT, SIGURG,  SIGWINCH,
                                            SIGSTOP, SIGTSTP, SIGTTIN, SIGTTOU};
-  return std::find(harmless_signals.begin(), harmless_signals.end(), number) ==
-         harmless_signals.end();
+  return std::ranges::find(harmless_signals, number) == harmless_signals.end();
 }
 
 extern "C" void end_groups_and_process(int number) {

@@ -120,10 +120,7 @@ Panel laid_out(Panel panel) {
   lay_out(panel.x, panel.curves, &PlottedCurve::x);
   lay_out(panel.y, panel.curves, &PlottedCurve::y);
   if (panel.z) lay_out(*panel.z, panel.curves, &PlottedCurve::z);
-  panel.curves.erase(
-      std::remove_if(panel.curves.begin(), panel.curves.end(),
-                     [](const PlottedCurve& curve) { return !has_finite_point(curve); }),
-      panel.curves.end());
+  std::erase_if(panel.curves, [](const PlottedCurve& curve) { return !has_finite_point(curve); });
   for (Text& text : panel.texts) {
     move_infinity_to_edge(text.x, panel.x);
     move_infinity_to_edge(text.y, panel.y);

@@ -56,9 +56,7 @@ Figure front_figure(const SceneBenchmark& scene) {
     }
     panel.curves.push_back(std::move(points));
   }
-  std::sort(front.begin(), front.end(), [](const BenchmarkRun* a, const BenchmarkRun* b) {
-    return a->time.median_s < b->time.median_s;
-  });
+  std::ranges::sort(front, {}, [](const BenchmarkRun* run) { return run->time.median_s; });
   for (const BenchmarkRun* run : front) {
     add_point(*run, line);
     if (run->size == 0) continue;

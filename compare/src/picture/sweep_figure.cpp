@@ -15,8 +15,8 @@ namespace {
 constexpr std::size_t most_lines = 6;  // number of different curve styles
 
 bool is_numeric(const SweptField& field) {
-  return std::all_of(field.values.begin(), field.values.end(),
-                     [](const std::string& value) { return as_number<double>(value).has_value(); });
+  return std::ranges::all_of(
+      field.values, [](const std::string& value) { return as_number<double>(value).has_value(); });
 }
 
 double number_of(const std::string& text) { return as_number<double>(text).value_or(NAN); }
@@ -40,7 +40,7 @@ std::vector<std::string> fields_of(const std::string& line) {
 std::vector<double> column_of(const std::string& header, const std::vector<std::string>& rows,
                               const std::string& name) {
   const std::vector<std::string> names = fields_of(header);
-  const auto found = std::find(names.begin(), names.end(), name);
+  const auto found = std::ranges::find(names, name);
   if (found == names.end()) {
     throw InputError(fmt::format("--plot: the sweep has no column {}", name));
   }
@@ -78,8 +78,7 @@ struct CellAxis {
       at.push_back(field.logarithmic ? std::log(number_of(value)) : number_of(value));
     }
     std::iota(order.begin(), order.end(), std::size_t{0});
-    std::sort(order.begin(), order.end(),
-              [&](std::size_t a, std::size_t b) { return at[a] < at[b]; });
+    std::ranges::sort(order, [&](std::size_t a, std::size_t b) { return at[a] < at[b]; });
     std::sort(at.begin(), at.end());
     const double alone = at.front() == 0 || field.logarithmic ? 1 : 0.1 * std::abs(at.front());
     const std::size_t last = at.size() - 1;

@@ -235,9 +235,8 @@ Scene SceneTemplate::with(const std::vector<SceneField>& values) const {
     root.insert_or_assign("gravity", scaled_gravity(scene, gamma->value.text()));
     scene = read_scene(root, parsed_->name, parsed_->materials);
   }
-  const bool gives_torsion = std::any_of(values.begin(), values.end(), [](const SceneField& value) {
-    return value.field == "rod.torsional_stiffness";
-  });
+  const bool gives_torsion = std::ranges::any_of(
+      values, [](const SceneField& value) { return value.field == "rod.torsional_stiffness"; });
   if (scene.torsional_stiffness && parsed_->bending_stiffness && !gives_torsion) {
     // The ratio is computed first, so that GJ is unchanged if EI is.
     *scene.torsional_stiffness *= scene.mean_bending_stiffness() / *parsed_->bending_stiffness;

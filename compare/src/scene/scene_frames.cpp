@@ -48,9 +48,8 @@ std::optional<Eigen::Vector3d> scene_normal(const Scene& scene) {
   // The test uses each vector rather than the eigenvalue, which is the sum of their squares up to a
   // rounding of 1e-16.
   constexpr double noise = 1e-9;
-  const bool is_common = std::all_of(vectors.begin(), vectors.end(), [&](const auto& v) {
-    return std::abs(v.dot(normal)) <= noise * v.norm();
-  });
+  const bool is_common = std::ranges::all_of(
+      vectors, [&](const auto& v) { return std::abs(v.dot(normal)) <= noise * v.norm(); });
   if (!is_common) return std::nullopt;
   for (const std::size_t i : obstacles_in_reach(scene)) {
     const Eigen::Vector3d& within = scene.grippers.front().position;

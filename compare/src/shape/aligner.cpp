@@ -168,9 +168,7 @@ std::vector<Aligner::Placement> Aligner::coarse_placements(const Shape& way,
                              weights(placed.arc_length, points));
     result.push_back(std::move(placed));
   }
-  std::stable_sort(result.begin(), result.end(), [](const Placement& a, const Placement& b) {
-    return a.mean_square < b.mean_square;
-  });
+  std::ranges::stable_sort(result, {}, &Placement::mean_square);
   return result;
 }
 

@@ -105,8 +105,7 @@ double distance_from_straight(const Scene& scene, const Shape& shape) {
 
 std::optional<Eigen::Index> free_tip(const Scene& scene, const std::vector<double>& s) {
   const auto is_free = [&](double at) {
-    return std::none_of(scene.grippers.begin(), scene.grippers.end(),
-                        [at](const Gripper& gripper) { return gripper.at == at; });
+    return std::ranges::find(scene.grippers, at, &Gripper::at) == scene.grippers.end();
   };
   const double near = 1e-9 * scene.length;
   if (is_free(scene.length) && s.back() >= scene.length - near) {
