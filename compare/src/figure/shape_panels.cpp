@@ -35,8 +35,6 @@ std::array<double, 2> widened(const std::array<double, 2>& range, double to) {
   return {middle - half, middle + half};
 }
 
-bool is_shown(const Series& series, int view) { return series.view < 0 || series.view == view; }
-
 std::vector<double> coordinates(const Series& series, int axis) {
   std::vector<double> values(static_cast<std::size_t>(series.points.cols()));
   Eigen::RowVectorXd::Map(values.data(), series.points.cols()) = series.points.row(axis);
@@ -73,7 +71,7 @@ std::vector<Panel> shape_panels(const Drawing& drawing) {
                 .equal_aspect = true,
                 .has_legend = i + 1 == views.size()};
     for (const Series& drawn : all) {
-      if (!is_shown(drawn, static_cast<int>(i))) continue;
+      if (drawn.view >= 0 && drawn.view != static_cast<int>(i)) continue;
       const Series series =
           drawn.view < 0 ? drawn : within(drawn, view, {x[0], up[0]}, {x[1], up[1]});
       panel.curves.push_back({.id = series.id,

@@ -30,11 +30,9 @@ Json twist_json(const std::vector<energy_model::TwistedPart>& twists) {
   return {{"total_rad", total}, {"parts", std::move(parts)}};
 }
 
-Json turns_json(const std::vector<compare::Linking>& parts) {
-  return json_list(parts, [&](const compare::Linking& part) -> Json {
-    return {{"from_m", part.begin}, {"to_m", part.end},      {"held", part.held},
-            {"twist", part.twist},  {"writhe", part.writhe}, {"writhe_error", part.writhe_error}};
-  });
+Json turn_json(const compare::Linking& part) {
+  return {{"from_m", part.begin}, {"to_m", part.end},      {"held", part.held},
+          {"twist", part.twist},  {"writhe", part.writhe}, {"writhe_error", part.writhe_error}};
 }
 
 /// Whether a proof or an eigenvalue decides between stable and unstable.
@@ -169,7 +167,7 @@ Json solution_json(const compare::Solution& solution, const compare::Scene& scen
     result["neutral_directions"] = solution.neutral_directions;
   }
   if (!solution.twists.empty()) result["twist"] = twist_json(solution.twists);
-  if (!solution.linking.empty()) result["turns"] = turns_json(solution.linking);
+  if (!solution.linking.empty()) result["turns"] = json_list(solution.linking, turn_json);
   if (follows_twist(solution)) {
     result["one_branch_followed"] = true;
   }

@@ -11,11 +11,6 @@ namespace {
 
 constexpr const char* green = "#207A34";
 
-/// Returns the lag in words.
-std::string lag_words(const MotionCheck& check) {
-  return fmt::format("{:.4g} ms {}", std::abs(check.lag) * 1e3, check.lag > 0 ? "late" : "early");
-}
-
 Series worst_point(const MotionCheck& check) {
   const FrameShapes& shapes = check.worst_shapes;
   const FrameError& worst = check.worst_frame_error();
@@ -59,7 +54,8 @@ Figure error_figure(const MotionCheck& check) {
       {.colour = "#0059A8", .width = 2});
   if (!check.frames_without_lag.empty()) {
     add(curve_of(check.frames_without_lag, &FrameError::rms_m),
-        fmt::format("RMS if it were not {}", lag_words(check)),
+        fmt::format("RMS if it were not {:.4g} ms {}", std::abs(check.lag) * 1e3,
+                    check.lag > 0 ? "late" : "early"),
         {.colour = green, .width = 2, .dashes = Dashes::dashed});
   }
   add({.x = {check.worst_frame_error().time}, .y = {check.worst_frame_error().rms_m * 1e3}},

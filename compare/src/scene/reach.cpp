@@ -6,10 +6,6 @@
 namespace dlo::compare {
 namespace {
 
-double total_load(const Scene& scene) {
-  return scene.weight_per_length().norm() * scene.length + scene.total_load_magnitude();
-}
-
 std::vector<std::size_t> obstacles_within(const Scene& scene, double distance) {
   const std::vector<double> clearances = obstacle_clearances(scene);
   std::vector<std::size_t> result;
@@ -62,7 +58,9 @@ std::vector<std::size_t> obstacles_in_reach(const Scene& scene,
                                             const ForceModelSettings& settings) {
   const double stiffness =
       std::min(scene.axial_stiffness(), settings.c_c.value_or(scene.axial_stiffness()));
-  return obstacles_within(scene, 2 * scene.length * std::sqrt(total_load(scene) / stiffness));
+  const double load =
+      scene.weight_per_length().norm() * scene.length + scene.total_load_magnitude();
+  return obstacles_within(scene, 2 * scene.length * std::sqrt(load / stiffness));
 }
 
 std::vector<Eigen::Vector3d> expand_obstacle_forces(const Scene& scene,

@@ -36,13 +36,6 @@ constexpr double whole_rod_slack = 0.03;
 /// Number of positions along the rod at which a file that covers a part of it is tried.
 constexpr int coarse_places_along = 5;
 
-/// Returns l - s in reverse order, so that it increases again.
-std::vector<double> mirrored(const std::vector<double>& s, double length) {
-  std::vector<double> result(s.rbegin(), s.rend());
-  for (double& value : result) value = length - value;
-  return result;
-}
-
 double weighted_mean_square(const Eigen::Matrix3Xd& gaps, const Eigen::VectorXd& weight) {
   return gaps.colwise().squaredNorm().transpose().dot(weight);
 }
@@ -73,7 +66,9 @@ Aligner::Aligner(const MeasuredShape& shape, double length, const AlignOptions& 
   }
   file_points_[1].points = along.points.rowwise().reverse();
   const double end = rule_ == ArcLengths::nearest ? along.arc_length.back() : length;
-  file_points_[1].arc_length = mirrored(along.arc_length, end);
+  std::vector<double>& against = file_points_[1].arc_length;
+  against.assign(along.arc_length.rbegin(), along.arc_length.rend());
+  for (double& s : against) s = end - s;
 }
 
 Shape Aligner::stretched_to_rod(Shape way) const {
