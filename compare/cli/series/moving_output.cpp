@@ -31,50 +31,44 @@ Json moving_json(const compare::MovingAgreement& distance) {
           {"counters", distance.counters}};
 }
 
-Json moving_json(const std::vector<MovingRow>& rows) {
-  Json result = Json::array();
-  for (const MovingRow& row : rows) {
-    const compare::MovingRun& run = row.run;
-    Json entry = {{"movement", compare::to_string(row.experiment.movement)},
-                  {"rod", row.experiment.horizontal ? "horizontal" : "hanging"},
-                  {"variant", compare::to_string(row.experiment.variant)},
-                  {"status", to_text(run.status)},
-                  {"steps", run.steps},
-                  {"c_s_not_1", run.damped_steps},
-                  {"d_m_above_l_s", run.limited_steps},
-                  {"average_force_N", run.average_force},
-                  {"average_net_force_N", run.average_net_force}};
-    if (row.printed) {
-      entry["printed"] = {{"table", row.printed->table},
-                          {"label", row.printed->label},
-                          {"steps", row.printed->steps},
-                          {"c_s_not_1", row.printed->damped_steps},
-                          {"d_m_above_l_s", row.printed->limited_steps},
-                          {"average_force_N", row.printed->average_force}};
-    }
-    const compare::PointParameters reading = compare::point_parameters(row.run.c_F, row.run.c_h);
-    entry["reading"] = {{"point_mass_kg", reading.mass},
-                        {"damping_rate_per_s", reading.damping_rate},
-                        {"drag_N_s_per_m", reading.drag}};
-    if (row.error) {
-      // Errors that are not finite become null.
-      entry["error"] = {{"shape_rms_over_length", row.error->shape_rms},
-                        {"shape_max_over_length", row.error->shape_max},
-                        {"force_rms_N", row.error->force_rms},
-                        {"force_max_N", row.error->force_max}};
-    }
-    result.push_back(std::move(entry));
+Json row_json(const MovingRow& row) {
+  const compare::MovingRun& run = row.run;
+  Json entry = {{"movement", compare::to_string(row.experiment.movement)},
+                {"rod", row.experiment.horizontal ? "horizontal" : "hanging"},
+                {"variant", compare::to_string(row.experiment.variant)},
+                {"status", to_text(run.status)},
+                {"steps", run.steps},
+                {"c_s_not_1", run.damped_steps},
+                {"d_m_above_l_s", run.limited_steps},
+                {"average_force_N", run.average_force},
+                {"average_net_force_N", run.average_net_force}};
+  if (row.printed) {
+    entry["printed"] = {{"table", row.printed->table},
+                        {"label", row.printed->label},
+                        {"steps", row.printed->steps},
+                        {"c_s_not_1", row.printed->damped_steps},
+                        {"d_m_above_l_s", row.printed->limited_steps},
+                        {"average_force_N", row.printed->average_force}};
   }
-  return result;
+  const compare::PointParameters reading = compare::point_parameters(row.run.c_F, row.run.c_h);
+  entry["reading"] = {{"point_mass_kg", reading.mass},
+                      {"damping_rate_per_s", reading.damping_rate},
+                      {"drag_N_s_per_m", reading.drag}};
+  if (row.error) {
+    // Errors that are not finite become null.
+    entry["error"] = {{"shape_rms_over_length", row.error->shape_rms},
+                      {"shape_max_over_length", row.error->shape_max},
+                      {"force_rms_N", row.error->force_rms},
+                      {"force_max_N", row.error->force_max}};
+  }
+  return entry;
 }
 
-Json moving_json(const std::vector<compare::MovingScanEntry>& scan) {
-  return json_list(scan, [&](const compare::MovingScanEntry& entry) -> Json {
-    return {{"varied", entry.varied},
-            {"choices", moving_json(entry.choices)},
-            {"distance", moving_json(entry.distance)},
-            {"rows", moving_json(entry.rows)}};
-  });
+Json scan_json(const compare::MovingScanEntry& entry) {
+  return {{"varied", entry.varied},
+          {"choices", moving_json(entry.choices)},
+          {"distance", moving_json(entry.distance)},
+          {"rows", json_list(entry.rows, row_json)}};
 }
 
 }  // namespace
@@ -82,7 +76,7 @@ Json moving_json(const std::vector<compare::MovingScanEntry>& scan) {
 Json moving_json(const compare::MovingReport& report) {
   return {{"choices", moving_json(report.choices)},
           {"nominal_steps", compare::nominal_moving_steps},
-          {"rows", moving_json(report.rows)},
+          {"rows", json_list(report.rows, row_json)},
           {"distance", moving_json(report.distance)},
           {"reference",
            {{"bending_stiffness_N_m2", compare::reference_bending_stiffness()},
@@ -90,8 +84,8 @@ Json moving_json(const compare::MovingReport& report) {
             {"weight_N", compare::moving_weight()},
             {"damping_ratio", compare::reference_damping_ratio},
             {"energy_error", report.reference_energy_error}}},
-          {"scan", moving_json(report.scan)},
-          {"table_3_scan", moving_json(report.table_3_scan)},
+          {"scan", json_list(report.scan, scan_json)},
+          {"table_3_scan", json_list(report.table_3_scan, scan_json)},
           {"findings", report.findings}};
 }
 

@@ -22,25 +22,22 @@ compare::Document paper_document(const compare::PaperReport& report,
             {"agrees", row.agrees},
             {"explanation", row.explanation}};
   });
-  Json cases = Json::array();
-  for (const compare::PaperCase& entry : report.cases) {
-    Json creep = Json::array();
-    for (const compare::ModulusAtTime& at : entry.creep) {
+  Json cases = json_list(report.cases, [](const compare::PaperCase& entry) {
+    Json creep = json_list(entry.creep, [](const compare::ModulusAtTime& at) {
       Json row = {{"time_s", at.time_s}, {"steps", at.steps}};
       row.update(modulus_json(at.modulus));
       row["rms_over_length"] = at.rms_over_length;
       row["distance_to_rest_over_length"] = at.rest_distance_over_length;
-      creep.push_back(std::move(row));
-    }
+      return row;
+    });
     Json rest = comparison_json(entry.rest);
     rest["point_weight"] =
         entry.weight == compare::PaperWeight::printed ? "printed" : "rho A l g / N";
     rest["time_at_one_third_s"] = entry.time_at_one_third();
     rest["modulus_against_time"] = std::move(creep);
-    cases.push_back(std::move(rest));
-  }
-  Json variants = Json::array();
-  for (const compare::ModulusVariant& variant : report.variants) {
+    return rest;
+  });
+  Json variants = json_list(report.variants, [](const compare::ModulusVariant& variant) {
     Json row = {{"varied", variant.varied},
                 {"load_factor", variant.load_factor},
                 {"gamma", variant.gamma},
@@ -50,8 +47,8 @@ compare::Document paper_document(const compare::PaperReport& report,
                 {"bending_rule", compare::to_string(variant.settings.bending_rule)}};
     row.update(modulus_json(variant.modulus));
     row["rms_over_length"] = variant.rms_over_length;
-    variants.push_back(std::move(row));
-  }
+    return row;
+  });
   const std::string scan =
       "varied,force_factor=distance/force_factor,counters_near=distance/counters_near,"
       "counters=distance/counters";
