@@ -55,16 +55,14 @@ std::optional<double> half_width(const FittedValue& value) {
   return std::max(*value.high - *value.value, *value.value - *value.low);
 }
 
-Json numbers_json(const compare::MaterialFit& fit) {
-  return json_list(fit.others, [&](const compare::FittedNumber& number) -> Json {
-    return {{"name", number.name},
-            {"unit", number.unit},
-            {"value", number.value},
-            {"standard_deviation", number.deviation},
-            {"known_before", number.prior_deviation},
-            {"seen", number.is_determined_by_shapes()},
-            {"shape", json_or_null(number.shape)}};
-  });
+Json number_json(const compare::FittedNumber& number) {
+  return {{"name", number.name},
+          {"unit", number.unit},
+          {"value", number.value},
+          {"standard_deviation", number.deviation},
+          {"known_before", number.prior_deviation},
+          {"seen", number.is_determined_by_shapes()},
+          {"shape", json_or_null(number.shape)}};
 }
 
 Json scatter_json(const compare::ScatterBetweenShapes& scatter) {
@@ -88,8 +86,7 @@ void add_value(Json& result, const Key& key, const std::string& prefix, const Fi
 
 Json alternatives_json(const compare::Calibration& report,
                        const std::vector<compare::FitAlternative>& alternatives) {
-  Json result = Json::array();
-  for (const compare::FitAlternative& alternative : alternatives) {
+  return json_list(alternatives, [&](const compare::FitAlternative& alternative) {
     Json one = {{"options", option_words(alternative)},
                 {"natural_curvature_terms", alternative.natural_curvature_terms},
                 {"direction_tolerance_rad", alternative.direction_tolerance},
@@ -100,9 +97,8 @@ Json alternatives_json(const compare::Calibration& report,
                 {"prediction_rms_m", json_or_null(alternative.prediction_m)},
                 {"rms_m", alternative.rms_m}};
     add_value(one, stiffness_key(report.scenes.front()), "", alternative.youngs_modulus);
-    result.push_back(std::move(one));
-  }
-  return result;
+    return one;
+  });
 }
 
 Json shapes_json(const compare::Calibration& report) {
@@ -163,7 +159,7 @@ Json material_json(const compare::Calibration& report) {
   result["common_share"] = json_or_null(fit.common_share);
   result["alternatives"] = alternatives_json(report, fit.alternatives);
   result["tried"] = alternatives_json(report, fit.tried);
-  result["others"] = numbers_json(fit);
+  result["others"] = json_list(fit.others, number_json);
   result["chains"] = chains_json(fit.chains);
   result["clamps"] = json_list(fit.clamps, [](const compare::ClampCorrection& one) -> Json {
     return {{"gripper", one.gripper},

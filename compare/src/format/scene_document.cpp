@@ -234,13 +234,11 @@ nlohmann::ordered_json scene_document(const Scene& scene) {
                      {"torque_Nm", load.torque.isZero(0) ? Json() : to_json(load.torque)}});
     if (load.follows) loads.back()["follows"] = true;
   }
-  Json distributed = Json::array();
-  for (const DistributedLoad& load : scene.distributed_loads) {
-    distributed.push_back(
-        {{"from_m", load.from},
-         {"to_m", load.to},
-         {"force_per_length_N_per_m", json_list(load.force_per_length, vector_json)}});
-  }
+  Json distributed = json_list(scene.distributed_loads, [](const DistributedLoad& load) -> Json {
+    return {{"from_m", load.from},
+            {"to_m", load.to},
+            {"force_per_length_N_per_m", json_list(load.force_per_length, vector_json)}};
+  });
   Json document = {{"schema", "dlo/scene/1"},
                    {"scene", scene.name},
                    {"file", scene.file},

@@ -86,8 +86,7 @@ void count_from_1(Json& contacts) {
 }
 
 Json contacts_json(const std::vector<energy_model::ContactPart>& contacts) {
-  Json result = Json::array();
-  for (const energy_model::ContactPart& contact : contacts) {
+  return json_list(contacts, [](const energy_model::ContactPart& contact) {
     Json entry = {{"obstacle", contact.obstacle},
                   {"kind", energy_model::to_string(contact.kind)},
                   {"from_m", contact.begin},
@@ -99,9 +98,8 @@ Json contacts_json(const std::vector<energy_model::ContactPart>& contacts) {
       entry["to_force_N"] = contact.end_force;
       entry["largest_pressure_N_per_m"] = contact.largest_pressure;
     }
-    result.push_back(std::move(entry));
-  }
-  return result;
+    return entry;
+  });
 }
 
 std::string solution_text(const compare::Solution& solution, const compare::Scene& scene) {
