@@ -183,14 +183,10 @@ std::string pose_text(const compare::RigidMotion& pose, double length) {
 }
 
 Json to_json(const compare::Alignment& alignment) {
-  Json rotation = Json::array();
-  for (Eigen::Index i = 0; i < 3; ++i) {
-    rotation.push_back(to_json(Eigen::Vector3d(alignment.pose.rotation.row(i).transpose())));
-  }
   return {{"reversed", alignment.reversed},
           {"arc_lengths", compare::to_string(alignment.arc_lengths)},
           {"pose",
-           {{"rotation", std::move(rotation)},
+           {{"rotation", points_json(alignment.pose.rotation.transpose())},
             {"translation_m", to_json(alignment.pose.translation)}}}};
 }
 
