@@ -172,14 +172,11 @@ Json comparisons_json(const std::vector<compare::Comparison>& comparisons) {
 
 std::string pose_text(const compare::RigidMotion& pose, double length) {
   const Eigen::AngleAxisd turn(pose.rotation);
-  std::string out;
   const Eigen::Vector3d axis = shown(turn.axis(), 1);
   const Eigen::Vector3d move = shown(pose.translation, length);
-  append(
-      out,
+  return compare::formatted(
       "rotated by {:.3f} deg about [{:.4f}, {:.4f}, {:.4f}], then moved [{:.6g}, {:.6g}, {:.6g}] m",
       turn.angle() * 57.29577951308232, axis.x(), axis.y(), axis.z(), move.x(), move.y(), move.z());
-  return out;
 }
 
 Json to_json(const compare::Alignment& alignment) {
