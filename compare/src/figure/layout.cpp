@@ -89,18 +89,6 @@ CurveStyle curve_style(std::size_t i) {
   return {.colour = style.colour, .dashes = style.dashes, .mark = style.mark, .mark_size = 0.8};
 }
 
-CurveStyle curve_line(std::size_t i) {
-  CurveStyle style = curve_style(i);
-  style.mark = Mark::none;
-  return style;
-}
-
-CurveStyle curve_marks(std::size_t i) {
-  CurveStyle style = curve_style(i);
-  style.width = 0;
-  return style;
-}
-
 std::pair<double, double> Cells::range() const {
   PlotRange range = empty_range;
   widen(range, values);

@@ -29,10 +29,6 @@ inline constexpr std::size_t curve_colours = 6;
 /// Returns the style of the i-th curve, with a line and marks. Its colour can be distinguished by
 /// colour-blind readers, and its marks differ too. Styles repeat after curve_colours.
 [[nodiscard]] CurveStyle curve_style(std::size_t i);
-/// Returns curve_style(i) without marks.
-[[nodiscard]] CurveStyle curve_line(std::size_t i);
-/// Returns curve_style(i) without a line.
-[[nodiscard]] CurveStyle curve_marks(std::size_t i);
 
 /// Points of one style in a plot. Infinite coordinates are drawn at the plot's edge. At NaN a line
 /// is interrupted.

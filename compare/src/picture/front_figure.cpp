@@ -48,7 +48,8 @@ Figure front_figure(const SceneBenchmark& scene) {
   std::vector<const BenchmarkRun*> front;
   for (std::size_t k = 0; k < std::size(front_curves); ++k) {
     PlottedCurve points{
-        .id = std::to_string(k + 1), .title = front_curves[k].title, .look = curve_marks(k)};
+        .id = std::to_string(k + 1), .title = front_curves[k].title, .look = curve_style(k)};
+    points.look.width = 0;
     for (const BenchmarkRun& run : scene.runs) {
       if (!front_curves[k].holds(run)) continue;
       if (run.front) front.push_back(&run);

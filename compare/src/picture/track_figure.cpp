@@ -185,7 +185,8 @@ Panel load_panel(const Scene& scene, const TrackShapes& shapes, const char* labe
   const auto add = [&](const auto& frames, std::size_t gripper, const char* rod, std::size_t look) {
     PlottedCurve curve{.title = fmt::format("gripper {} at s = {:.4g} m{}", gripper + 1,
                                             scene.grippers[gripper].at, rod),
-                       .look = curve_line(look)};
+                       .look = curve_style(look)};
+    curve.look.mark = Mark::none;
     for (const auto& frame : frames) {
       curve.x.push_back(frame.time);
       curve.y.push_back((frame.grippers[gripper].*load).norm());
