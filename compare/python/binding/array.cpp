@@ -57,10 +57,6 @@ py::array rows_view(const double* first, py::ssize_t rows, py::handle owner, py:
   return numbers_view(first, {rows, 3}, {stride, 1}, owner);
 }
 
-py::array points_view(const Eigen::Matrix3Xd& points, py::handle owner) {
-  return rows_view(points.data(), points.cols(), owner);
-}
-
 py::array values_view(const std::vector<double>& values, py::handle owner) {
   return numbers_view(values.data(), {static_cast<py::ssize_t>(values.size())}, {1}, owner);
 }

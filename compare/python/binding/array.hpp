@@ -39,9 +39,6 @@ using OutputArray = Typed<py::object, "Optional[numpy.ndarray]">;
 [[nodiscard]] py::array rows_view(const double* first, py::ssize_t rows, py::handle owner,
                                   py::ssize_t stride = 3);
 
-/// Returns a read-only M x 3 view of a 3 x M matrix, which keeps `owner` alive.
-[[nodiscard]] py::array points_view(const Eigen::Matrix3Xd& points, py::handle owner);
-
 /// Returns a read-only view of a list of numbers, which keeps `owner` alive.
 [[nodiscard]] py::array values_view(const std::vector<double>& values, py::handle owner);
 

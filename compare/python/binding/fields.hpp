@@ -31,7 +31,7 @@ void bind_array(py::class_<Object, Options...>& bound, const char* name, const c
         if constexpr (std::is_same_v<std::remove_cvref_t<decltype(values)>, std::vector<double>>) {
           return values_view(values, self);
         } else {
-          return points_view(values, self);
+          return rows_view(values.data(), values.cols(), self);
         }
       },
       words);
