@@ -63,7 +63,9 @@ void run(const TrackCommand& command) {
           {"json", [&] { return json_text(track_document(result, scene, command.frames).json); }},
           {"csv", [&] { return track_csv(result, scene, command.frames); }}});
   command.plot.draw([&] {
-    return compare::track_picture(scene, {track, dynamic}, result.options);
+    const compare::TrackFigures figures =
+        compare::track_figures(scene, {track, dynamic}, result.options);
+    return compare::Picture{{{{figures.strip}, {figures.forces}}}};
   });
   throw_if_stopped(scene, track.stopped, "", track.frames.size());
   if (dynamic != nullptr) {

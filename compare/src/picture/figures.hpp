@@ -138,8 +138,4 @@ struct TrackFigures {
 [[nodiscard]] TrackFigures track_figures(const Scene& scene, const TrackShapes& shapes,
                                          const TrackOptions& options);
 
-/// Draws both track_figures() next to each other.
-[[nodiscard]] Picture track_picture(const Scene& scene, const TrackShapes& shapes,
-                                    const TrackOptions& options);
-
 }  // namespace dlo::compare

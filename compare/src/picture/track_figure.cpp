@@ -232,9 +232,4 @@ TrackFigures track_figures(const Scene& scene, const TrackShapes& shapes,
   return {.strip = strip_figure(scene, shapes, options), .forces = force_figure(scene, shapes)};
 }
 
-Picture track_picture(const Scene& scene, const TrackShapes& shapes, const TrackOptions& options) {
-  TrackFigures figures = track_figures(scene, shapes, options);
-  return {{{{std::move(figures.strip)}, {std::move(figures.forces)}}}};
-}
-
 }  // namespace dlo::compare
