@@ -1,5 +1,7 @@
 #include "dlo/compare/scene_file.hpp"
 
+#include <fmt/format.h>
+
 #include <utility>
 
 #include "base/builtin_data.hpp"
@@ -8,6 +10,9 @@
 #include "mjcf/mjcf_scene.hpp"
 #include "reading/read_scene.hpp"
 #include "toml/strict_table.hpp"
+
+#define XXH_INLINE_ALL  // header-only, nothing to link
+#include <xxhash.h>
 
 namespace dlo::compare {
 
@@ -40,6 +45,10 @@ std::vector<Scene> paper_scenes() {
       parse_scene(std::string(builtin::spring_steel_175_toml), "data/scenes/spring_steel_175.toml"),
       parse_scene(std::string(builtin::spring_steel_215_toml),
                   "data/scenes/spring_steel_215.toml")};
+}
+
+std::string fingerprint(const std::string& text) {
+  return fmt::format("{:016x}", XXH3_64bits(text.data(), text.size()));
 }
 
 }  // namespace dlo::compare
