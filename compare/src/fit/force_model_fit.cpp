@@ -14,7 +14,6 @@
 #include "dlo/compare/reference.hpp"
 #include "dlo/compare/solution.hpp"
 #include "dlo/force_model/step_size.hpp"
-#include "fit/force_model_shortfall.hpp"
 #include "polygon/natural_plane.hpp"
 #include "polygon/scalar_search.hpp"
 #include "solve/polygon_solution.hpp"
@@ -378,10 +377,6 @@ double ForceModelFit::largest_deviation() const {
 double ForceModelFit::largest_holdout_deviation() const {
   const std::size_t all = stepped_rms_over_length.size();
   return largest_of(stepped_rms_over_length, all - holdouts, all);
-}
-
-std::vector<std::string> ForceModelFit::shortfall_reasons() const {
-  return target_shortfall_reasons(*this);
 }
 
 }  // namespace dlo::compare

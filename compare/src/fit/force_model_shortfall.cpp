@@ -1,10 +1,8 @@
-#include "fit/force_model_shortfall.hpp"
-
 #include <fmt/format.h>
 
 #include <algorithm>
 
-#include "dlo/compare/deviation.hpp"
+#include "dlo/compare/force_model_fit.hpp"
 #include "dlo/compare/force_model_settings.hpp"
 
 namespace dlo::compare {
@@ -57,14 +55,13 @@ std::string stretch_shortfall(const ForceModelFit& fit, double stretch) {
 
 }  // namespace
 
-std::vector<std::string> target_shortfall_reasons(const ForceModelFit& fit) {
+std::vector<std::string> ForceModelFit::shortfall_reasons() const {
   std::vector<std::string> reasons;
-  if (fit.reaches_target()) return reasons;
-  const double segments = worst_of_segments(fit);
-  const double stretch =
-      *std::max_element(fit.stretch_rms_over_length.begin(), fit.stretch_rms_over_length.end());
-  if (segments > fit.target) reasons.push_back(discretisation_shortfall(fit, segments));
-  if (stretch > fit.target) reasons.push_back(stretch_shortfall(fit, stretch));
+  if (reaches_target()) return reasons;
+  const double segments = worst_of_segments(*this);
+  const double stretch = std::ranges::max(stretch_rms_over_length);
+  if (segments > target) reasons.push_back(discretisation_shortfall(*this, segments));
+  if (stretch > target) reasons.push_back(stretch_shortfall(*this, stretch));
   if (reasons.empty()) {
     reasons.push_back(fmt::format(
         "rigid segments ({:.3g} %) and stretch ({:.3g} %) together are too much: more --points",
