@@ -102,6 +102,28 @@ double deviance(const Eigen::VectorXd& residual, const Eigen::MatrixXd& basis,
   return freedom * std::log(sum_of_squares / freedom) + log_determinant;
 }
 
+/// Returns the series with at most 250 rows each, at equal intervals. That is enough to distinguish
+/// covariances, of which hundreds are tried.
+std::vector<ResidualSeries> thinned(const std::vector<ResidualSeries>& series) {
+  constexpr Eigen::Index most_rows = 250;
+  std::vector<ResidualSeries> result = series;
+  for (ResidualSeries& one : result) {
+    const Eigen::Index every = (one.residual.size() + most_rows - 1) / most_rows;
+    if (every <= 1) continue;
+    const Eigen::Index rows = (one.residual.size() - 1) / every + 1;
+    for (Eigen::Index row = 1; row < rows; ++row) {
+      one.arc_length[static_cast<std::size_t>(row)] =
+          one.arc_length[static_cast<std::size_t>(row * every)];
+      one.residual[row] = one.residual[row * every];
+      one.design.row(row) = one.design.row(row * every);
+    }
+    one.arc_length.resize(static_cast<std::size_t>(rows));
+    one.residual.conservativeResize(rows);
+    one.design.conservativeResize(rows, Eigen::NoChange);
+  }
+  return result;
+}
+
 /// A covariance of the search grid, and its deviance.
 struct Candidate {
   ErrorCovariance covariance;
@@ -185,26 +207,6 @@ Eigen::MatrixXd basis_of(Eigen::MatrixXd columns) {
   return qr.householderQ() * Eigen::MatrixXd::Identity(columns.rows(), rank);
 }
 
-std::vector<ResidualSeries> thinned(const std::vector<ResidualSeries>& series) {
-  constexpr Eigen::Index most_rows = 250;
-  std::vector<ResidualSeries> result = series;
-  for (ResidualSeries& one : result) {
-    const Eigen::Index every = (one.residual.size() + most_rows - 1) / most_rows;
-    if (every <= 1) continue;
-    const Eigen::Index rows = (one.residual.size() - 1) / every + 1;
-    for (Eigen::Index row = 1; row < rows; ++row) {
-      one.arc_length[static_cast<std::size_t>(row)] =
-          one.arc_length[static_cast<std::size_t>(row * every)];
-      one.residual[row] = one.residual[row * every];
-      one.design.row(row) = one.design.row(row * every);
-    }
-    one.arc_length.resize(static_cast<std::size_t>(rows));
-    one.residual.conservativeResize(rows);
-    one.design.conservativeResize(rows, Eigen::NoChange);
-  }
-  return result;
-}
-
 CorrelationEstimate correlation_of(const std::vector<ResidualSeries>& series) {
   const std::vector<Candidate> all = candidates(series);
   CorrelationEstimate result;
@@ -214,8 +216,7 @@ CorrelationEstimate correlation_of(const std::vector<ResidualSeries>& series) {
       all.begin(), all.end(),
       [](const Candidate& a, const Candidate& b) { return a.deviance < b.deviance; });
   result.covariance = best->covariance;
-  result.likelihood_gain = all.front().deviance - best->deviance;
-  result.significant = result.likelihood_gain > significant_gain;
+  result.significant = all.front().deviance - best->deviance > significant_gain;
   return result;
 }
 

@@ -28,22 +28,16 @@ struct ErrorCovariance {
 /// numbers that move all points alike have one column in the basis.
 [[nodiscard]] Eigen::MatrixXd basis_of(Eigen::MatrixXd columns);
 
-/// Returns the series with at most 250 rows each, at equal intervals. That is enough to distinguish
-/// covariances, of which hundreds are tried.
-[[nodiscard]] std::vector<ResidualSeries> thinned(const std::vector<ResidualSeries>& series);
-
 /// Correlation of the errors as estimated from residuals; see correlation_of().
 struct CorrelationEstimate {
   ErrorCovariance covariance;  ///< the most likely covariance
-  /// Twice the increase of the restricted log likelihood relative to independent errors.
-  double likelihood_gain = 0;
-  bool tested = false;       ///< whether there were enough residuals
-  bool significant = false;  ///< independent errors gain as much in less than one case of twenty
+  bool tested = false;         ///< whether there were enough residuals
+  bool significant = false;    ///< independent errors gain as much in less than one case of twenty
 };
 
-/// Returns the most likely covariance of thinned() series by restricted maximum likelihood, which
-/// accounts for the part of the errors that the fitted numbers absorbed. The likelihood is that of
-/// a Kalman filter's innovations, so it costs O(n p) for n residuals.
+/// Returns the most likely covariance of at most 250 residuals of each series by restricted maximum
+/// likelihood, which accounts for the part of the errors that the fitted numbers absorbed. The
+/// likelihood is that of a Kalman filter's innovations, so it costs O(n p) for n residuals.
 [[nodiscard]] CorrelationEstimate correlation_of(const std::vector<ResidualSeries>& series);
 
 /// A covariance and its probability relative to others.

@@ -30,6 +30,25 @@ Eigen::MatrixXd information_of(const LinearFit& fit, double variance,
   return information;
 }
 
+/// Returns the gradient of the log posterior density by the numbers, which is minus half that of
+/// the deviance: the sum of squares divided by the variance, plus the priors' terms.
+Eigen::VectorXd log_posterior_gradient(const LinearFit& fit, double variance,
+                                       const Eigen::VectorXd& prior_inverse_deviations,
+                                       const Eigen::VectorXd& values) {
+  return fit.design.transpose() * fit.residual / variance -
+         prior_inverse_deviations.cwiseAbs2().cwiseProduct(values);
+}
+
+/// Returns the logarithm of the determinant of half the deviance's second derivatives by all
+/// numbers except the first, without those that neither points nor priors determine.
+double log_determinant(const LinearFit& fit, double variance,
+                       const Eigen::VectorXd& prior_inverse_deviations) {
+  const Eigen::Index others = prior_inverse_deviations.size() - 1;
+  const Eigen::ColPivHouseholderQR<Eigen::MatrixXd> information(
+      information_of(fit, variance, prior_inverse_deviations).bottomRightCorner(others, others));
+  return information.matrixQR().diagonal().head(information.rank()).array().abs().log().sum();
+}
+
 constexpr int most_steps = 30;
 constexpr int most_halvings = 8;
 /// Predicted decrease of the deviance in one step of a profile's chord iteration below which the
@@ -116,21 +135,6 @@ std::vector<bool> undetermined_numbers(const LinearFit& fit, double variance,
     }
   }
   return result;
-}
-
-Eigen::VectorXd log_posterior_gradient(const LinearFit& fit, double variance,
-                                       const Eigen::VectorXd& prior_inverse_deviations,
-                                       const Eigen::VectorXd& values) {
-  return fit.design.transpose() * fit.residual / variance -
-         prior_inverse_deviations.cwiseAbs2().cwiseProduct(values);
-}
-
-double log_determinant(const LinearFit& fit, double variance,
-                       const Eigen::VectorXd& prior_inverse_deviations) {
-  const Eigen::Index others = prior_inverse_deviations.size() - 1;
-  const Eigen::ColPivHouseholderQR<Eigen::MatrixXd> information(
-      information_of(fit, variance, prior_inverse_deviations).bottomRightCorner(others, others));
-  return information.matrixQR().diagonal().head(information.rank()).array().abs().log().sum();
 }
 
 GaussNewton::GaussNewton(FittedRods& rods, Eigen::VectorXd values,

@@ -50,17 +50,6 @@ struct VarianceEstimate {
 [[nodiscard]] std::vector<bool> undetermined_numbers(
     const LinearFit& fit, double variance, const Eigen::VectorXd& prior_inverse_deviations);
 
-/// Returns the gradient of the log posterior density by the numbers, which is minus half that of
-/// the deviance: the sum of squares divided by the variance, plus the priors' terms.
-[[nodiscard]] Eigen::VectorXd log_posterior_gradient(
-    const LinearFit& fit, double variance, const Eigen::VectorXd& prior_inverse_deviations,
-    const Eigen::VectorXd& values);
-
-/// Returns the logarithm of the determinant of half the deviance's second derivatives by all
-/// numbers except the first, without those that neither points nor priors determine.
-[[nodiscard]] double log_determinant(const LinearFit& fit, double variance,
-                                     const Eigen::VectorXd& prior_inverse_deviations);
-
 /// Options of the Gauss-Newton iteration.
 struct GaussNewtonOptions {
   std::optional<double> noise;  ///< standard deviation of a coordinate [m]; empty: estimated

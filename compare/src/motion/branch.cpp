@@ -12,6 +12,7 @@
 #include "dlo/compare/error.hpp"
 #include "dlo/energy_model/couple_zero.hpp"
 #include "dlo/energy_model/turns.hpp"
+#include "dlo/obstacle/body.hpp"
 #include "polygon/energy_problems.hpp"
 
 namespace dlo::compare {
@@ -51,6 +52,26 @@ bool penetrates(const obstacle::Body& body, const SweptPatch& patch, double dept
   }
   return penetrates(body, first, depth, halvings - 1) ||
          penetrates(body, second, depth, halvings - 1);
+}
+
+/// Returns the radius of the largest ball in a body [m]; infinite for a half-space.
+double inner_radius(const obstacle::Body& body) {
+  if (body.is_half_space()) return std::numeric_limits<double>::infinity();
+  return body.radius() + body.upper().minCoeff();
+}
+
+/// Whether a polyline whose points move on straight lines passes through a body deeper than
+/// `depth`.
+/// @param before, after  its points at the begin and the end of the motion, 3 x M, M >= 2 [m]
+/// @param depth          > 0 [m]
+bool sweeps_through_body(const obstacle::Body& body, const Eigen::Matrix3Xd& before,
+                         const Eigen::Matrix3Xd& after, double depth) {
+  constexpr int most_halvings = 24;
+  for (Eigen::Index i = 0; i + 1 < before.cols(); ++i) {
+    const SweptPatch patch{before.col(i), before.col(i + 1), after.col(i), after.col(i + 1)};
+    if (penetrates(body, patch, depth, most_halvings)) return true;
+  }
+  return false;
 }
 
 using energy_model::Equilibrium;
@@ -228,21 +249,6 @@ double extrapolated_zero(double a, double b) {
 }
 
 }  // namespace
-
-double inner_radius(const obstacle::Body& body) {
-  if (body.is_half_space()) return std::numeric_limits<double>::infinity();
-  return body.radius() + body.upper().minCoeff();
-}
-
-bool sweeps_through_body(const obstacle::Body& body, const Eigen::Matrix3Xd& before,
-                         const Eigen::Matrix3Xd& after, double depth) {
-  constexpr int most_halvings = 24;
-  for (Eigen::Index i = 0; i + 1 < before.cols(); ++i) {
-    const SweptPatch patch{before.col(i), before.col(i + 1), after.col(i), after.col(i + 1)};
-    if (penetrates(body, patch, depth, most_halvings)) return true;
-  }
-  return false;
-}
 
 SceneEnergies energies_of(const SolvedInstant& moment) {
   const Scene& now = moment.scene;

@@ -10,20 +10,9 @@
 #include "dlo/compare/scene.hpp"
 #include "dlo/compare/solution.hpp"
 #include "dlo/energy_model/energy.hpp"
-#include "dlo/obstacle/body.hpp"
 #include "motion/frame_clock.hpp"
 
 namespace dlo::compare {
-
-/// Returns the radius of the largest ball in a body [m]; infinite for a half-space.
-[[nodiscard]] double inner_radius(const obstacle::Body& body);
-
-/// Whether a polyline whose points move on straight lines passes through a body deeper than
-/// `depth`.
-/// @param before, after  its points at the begin and the end of the motion, 3 x M, M >= 2 [m]
-/// @param depth          > 0 [m]
-[[nodiscard]] bool sweeps_through_body(const obstacle::Body& body, const Eigen::Matrix3Xd& before,
-                                       const Eigen::Matrix3Xd& after, double depth);
 
 /// The scene at one time of the motion, and the energy model's solution.
 struct SolvedInstant {

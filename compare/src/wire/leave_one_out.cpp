@@ -28,6 +28,21 @@ Shape with_arc_lengths_along_points(Shape shape, double length) {
   return shape;
 }
 
+/// Whether two scenes are the same experiment, up to the accuracy with which a gripper is put back
+/// into its place.
+bool are_same_experiment(const Scene& a, const Scene& b) {
+  return a.length == b.length &&
+         std::equal(a.grippers.begin(), a.grippers.end(), b.grippers.begin(), b.grippers.end(),
+                    [&](const Gripper& one, const Gripper& other) {
+                      return one.at == other.at &&
+                             one.direction.has_value() == other.direction.has_value() &&
+                             (!one.direction || (*one.direction - *other.direction).norm() <=
+                                                    same_experiment_tolerance) &&
+                             (one.position - other.position).norm() <=
+                                 same_experiment_tolerance * a.length;
+                    });
+}
+
 std::optional<double> repeatability_of(const std::vector<Scene>& scenes, const MaterialFit& fit) {
   if (!std::all_of(scenes.begin(), scenes.end(), [&](const Scene& scene) {
         return are_same_experiment(scene, scenes.front());
@@ -46,19 +61,6 @@ std::optional<double> repeatability_of(const std::vector<Scene>& scenes, const M
 }
 
 }  // namespace
-
-bool are_same_experiment(const Scene& a, const Scene& b) {
-  return a.length == b.length &&
-         std::equal(a.grippers.begin(), a.grippers.end(), b.grippers.begin(), b.grippers.end(),
-                    [&](const Gripper& one, const Gripper& other) {
-                      return one.at == other.at &&
-                             one.direction.has_value() == other.direction.has_value() &&
-                             (!one.direction || (*one.direction - *other.direction).norm() <=
-                                                    same_experiment_tolerance) &&
-                             (one.position - other.position).norm() <=
-                                 same_experiment_tolerance * a.length;
-                    });
-}
 
 std::vector<std::string> unfitted_assumptions(const std::vector<Scene>& scenes,
                                               const MaterialFitOptions& options) {

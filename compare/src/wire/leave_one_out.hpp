@@ -19,10 +19,6 @@ namespace dlo::compare {
                                        const MaterialFitOptions& options,
                                        const energy_model::Equilibrium* known = nullptr);
 
-/// Whether two scenes are the same experiment, up to the accuracy with which a gripper is put back
-/// into its place.
-[[nodiscard]] bool are_same_experiment(const Scene& a, const Scene& b);
-
 /// Returns which of "natural curvature" and "clamp directions" are not fitted, if the shapes are of
 /// fewer than three different scenes: an error of these may then leave no residual. "clamp
 /// directions" requires a clamp in the first scene.

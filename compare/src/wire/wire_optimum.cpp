@@ -78,6 +78,22 @@ double effective_variance(const WireErrors& errors, const GaussNewton& fit) {
   return errors.variance * std::max(1.0, correlated / independent);
 }
 
+/// Returns the covariance of the fitted numbers. The covariance of correlated errors is only known
+/// from the residuals, so the result is the mean over all likely ones.
+Eigen::MatrixXd covariance_of_numbers(const WireErrors& errors, const GaussNewton& fit,
+                                      Eigen::Index frames, const std::optional<double>& noise) {
+  if (!errors.are_correlated()) return fit.covariance_of_numbers();
+  Eigen::MatrixXd sum = Eigen::MatrixXd::Zero(fit.values().size(), fit.values().size());
+  for (const LikelyCovariance& likely : likely_covariances(fit.series())) {
+    const double variance =
+        noise ? errors.variance : variance_under(fit.series(), likely.covariance, frames).variance;
+    sum += likely.weight * sandwich_covariance(fit.series(), fit.linear(), fit.weight(),
+                                               fit.prior_inverse_deviations(), likely.covariance,
+                                               variance);
+  }
+  return sum;
+}
+
 }  // namespace
 
 WireProblem::WireProblem(const std::vector<Scene>& nominal, const std::vector<MeasuredShape>& of,
@@ -144,20 +160,6 @@ void WireProblem::descend(GaussNewton& fit) const {
   if (fit.descend()) return;
   throw ConvergenceError(fmt::format("{}: the energy model has no equilibrium near the fitted one",
                                      scenes.front().file));
-}
-
-Eigen::MatrixXd covariance_of_numbers(const WireErrors& errors, const GaussNewton& fit,
-                                      Eigen::Index frames, const std::optional<double>& noise) {
-  if (!errors.are_correlated()) return fit.covariance_of_numbers();
-  Eigen::MatrixXd sum = Eigen::MatrixXd::Zero(fit.values().size(), fit.values().size());
-  for (const LikelyCovariance& likely : likely_covariances(fit.series())) {
-    const double variance =
-        noise ? errors.variance : variance_under(fit.series(), likely.covariance, frames).variance;
-    sum += likely.weight * sandwich_covariance(fit.series(), fit.linear(), fit.weight(),
-                                               fit.prior_inverse_deviations(), likely.covariance,
-                                               variance);
-  }
-  return sum;
 }
 
 WireOptimum::WireOptimum(const WireProblem& problem, FittedRods& rods, const Eigen::VectorXd& start)

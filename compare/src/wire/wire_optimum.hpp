@@ -72,12 +72,6 @@ struct WireErrors {
   [[nodiscard]] bool are_correlated() const { return correlation.share > 0; }
 };
 
-/// Returns the covariance of the fitted numbers. The covariance of correlated errors is only known
-/// from the residuals, so the result is the mean over all likely ones.
-[[nodiscard]] Eigen::MatrixXd covariance_of_numbers(const WireErrors& errors,
-                                                    const GaussNewton& fit, Eigen::Index frames,
-                                                    const std::optional<double>& noise);
-
 /// The most likely values of a wire's numbers, and the likelihood of others.
 class WireOptimum {
  public:
