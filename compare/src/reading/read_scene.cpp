@@ -52,7 +52,7 @@ std::shared_ptr<const MarkerMotion> read_start(StrictTable& rates, const Scene& 
       read_referenced_file(rates, "start", file_of_shape(path_beside(*name, scene.file)), allowed);
   MarkerMotion start{.file = *name, .positions = {}};
   try {
-    if (has_column(text, *name, "time")) {
+    if (has_column(text, "time")) {
       start = parse_markers(text, *name);
     } else {
       start.positions = rows_of_shape(parse_shape(text, *name), scene.length);

@@ -47,9 +47,9 @@ MarkerMotion parse_markers(std::string_view text, const std::string& file) {
   return result;
 }
 
-bool has_column(std::string_view text, const std::string& file, std::string_view name) {
+bool has_column(std::string_view text, std::string_view name) {
   bool found = false;
-  for_each_csv_row(text, file, {.most_rows = 1}, [&](const CsvRow& row) {
+  for_each_csv_row(text, "", {.most_rows = 1}, [&](const CsvRow& row) {
     found = std::ranges::find(row.fields, name) != row.fields.end();
   });
   return found;

@@ -73,7 +73,8 @@ Trajectory read_rows(StrictTable& table, std::vector<StrictTable>& rows, const P
 /// Reads the poses of a file. @throws std::invalid_argument as smooth_poses()
 std::vector<Pose> file_poses(const std::string& text, const std::string& file, const PoseKeys& keys,
                              std::optional<double> cutoff) {
-  if (keys.at && has_column(text, file, "s")) {
+  // Only markers have arc lengths.
+  if (keys.at && has_column(text, "s")) {
     return poses_of_markers(parse_markers(text, file), *keys.at, cutoff);
   }
   const Trajectory given = parse_trajectory(text, file);

@@ -128,9 +128,7 @@ class NumberColumns {
 /// @throws InputError that names the file, the line, and what is allowed
 [[nodiscard]] MarkerMotion parse_markers(std::string_view text, const std::string& file);
 
-/// Whether the first row of a CSV text has a column of this name: a recording of markers has
-/// `time`, which a shape has not, and `s`, which poses have not.
-[[nodiscard]] bool has_column(std::string_view text, const std::string& file,
-                              std::string_view name);
+/// Whether the first row of a CSV text has a column.
+[[nodiscard]] bool has_column(std::string_view text, std::string_view name);
 
 }  // namespace dlo::compare
