@@ -170,7 +170,7 @@ void note_unidentified_weight(const Scene& scene, MaterialFit& fit) {
 /// clamps
 bool analyse_residuals(MaterialProfiles& material, const MaterialPoint& best, MaterialFit& fit) {
   const std::vector<Scene>& scenes = material.scenes();
-  if (!(fit.rms_m > MaterialErrors::least_noise(scenes.front()))) return false;
+  if (!(fit.rms_m > least_noise(scenes.front()))) return false;
   fit.common_share = common_residual_share(material, best, fit.shapes);
   const double common =
       fit.common_share ? share_beyond_chance(*fit.common_share, scenes.size()) : 0;

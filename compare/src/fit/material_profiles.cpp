@@ -55,8 +55,6 @@ constexpr double derivative_step = 1e-3;
 
 }  // namespace
 
-double MaterialErrors::least_noise(const Scene& scene) { return 1e-8 * scene.length; }
-
 MaterialErrors::MaterialErrors(MaterialProfiles& material, const MaterialPoint& best, double least)
     : options_(material.options()),
       least_(least),
@@ -157,16 +155,16 @@ std::shared_ptr<ShapeMisfit::Solved> ShapeMisfit::solve(std::size_t i,
   return result;
 }
 
-const ShapeMisfit::Solved* ShapeMisfit::nearest(std::size_t i,
-                                                const MaterialPoint& material) const {
-  const Solved* best = nullptr;
+std::shared_ptr<const ShapeMisfit::Solved> ShapeMisfit::nearest(
+    std::size_t i, const MaterialPoint& material) const {
+  std::shared_ptr<const Solved> best;
   double least = std::numeric_limits<double>::infinity();
   for (const std::shared_ptr<const Solved>& entry : kept_) {
     const double distance = std::abs(entry->material.log_modulus - material.log_modulus) +
                             std::abs(entry->material.log_density - material.log_density);
     if (entry->scene != i || !(distance < least)) continue;
     least = distance;
-    best = entry.get();
+    best = entry;
   }
   return best;
 }
@@ -182,19 +180,15 @@ std::shared_ptr<const ShapeMisfit::Solved> ShapeMisfit::solved(std::size_t i,
         });
     if (shared != shared_solutions_.end()) return *shared;
   }
-  const Solved* start = follows ? nearest(i, material) : nullptr;
-  if (start != nullptr && start->material == material) {
-    for (const std::shared_ptr<const Solved>& entry : kept_) {
-      if (entry.get() == start) return entry;
-    }
-  }
+  const std::shared_ptr<const Solved> start = follows ? nearest(i, material) : nullptr;
+  if (start && start->material == material) return start;
   const auto has_shape = [](const Solved& shape) {
     return energy_model::succeeded(shape.equilibrium.status) ||
            (shape.equilibrium.status == energy_model::SolveStatus::not_verified &&
             shape.penetration > 0);
   };
   std::shared_ptr<Solved> result;
-  if (start != nullptr) result = solve(i, material, &start->equilibrium);
+  if (start) result = solve(i, material, &start->equilibrium);
   if (!result || !has_shape(*result)) {
     if (follows && searches_[i]++ >= most_searches) return nullptr;
     result = solve(i, material, nullptr);

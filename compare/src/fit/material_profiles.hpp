@@ -72,7 +72,8 @@ class ShapeMisfit {
   /// lowest one or the one near the points; null if neither is.
   [[nodiscard]] std::shared_ptr<const Solved> nearer_equilibrium(
       std::size_t i, const MaterialPoint& material, const std::shared_ptr<const Solved>& now);
-  [[nodiscard]] const Solved* nearest(std::size_t i, const MaterialPoint& material) const;
+  [[nodiscard]] std::shared_ptr<const Solved> nearest(std::size_t i,
+                                                      const MaterialPoint& material) const;
 
   const std::vector<Scene>& scenes_;
   MeasuredShapes& measured_;
@@ -173,10 +174,6 @@ class MaterialErrors {
   /// its sum of squares must be so large that the probability is below 1e-3 (F distribution;
   /// chi-squared distribution for given noise).
   [[nodiscard]] double rival_minimum_level(std::size_t number) const;
-
-  /// Returns the error of the energy model [m]. With it as lower bound of the noise, the interval
-  /// of a perfect shape is not rounding.
-  [[nodiscard]] static double least_noise(const Scene& scene);
 
  private:
   void set_correlation_effects(const ErrorCovariance& covariance,

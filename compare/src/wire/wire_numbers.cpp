@@ -256,13 +256,13 @@ std::string why_no_camera_tilt(const std::vector<Scene>& scenes,
   return "";
 }
 
-std::vector<Scene> with_nominal_frames(std::vector<Scene> scenes, const std::vector<bool>& flat,
+std::vector<Scene> with_nominal_frames(std::vector<Scene> scenes, const MeasuredShapes& measured,
                                        const MaterialFitOptions& options) {
   const bool turned = options.direction_tolerance > 0 || options.roll_tolerance > 0;
   if (options.natural_curvature_terms == 0 || !turned) return scenes;
   for (std::size_t i = 0; i < scenes.size(); ++i) {
     Gripper* const first = first_clamp(scenes[i]);
-    if (flat[i] || first == nullptr || (first->frame && first->frame->d1)) continue;
+    if (measured.is_flat(i) || first == nullptr || (first->frame && first->frame->d1)) continue;
     const double roll = first->frame ? first->frame->roll : 0;
     Scene bent = scenes[i];
     bent.natural_strain.y() += 1 / bent.length;

@@ -41,6 +41,10 @@ struct WireNumber {
       .flat = options.natural_curvature_terms > 0 ? FlatShapes::confined : FlatShapes::unmeasured};
 }
 
+/// Returns the error of the energy model [m]. With it as lower bound of the noise, the interval of
+/// a perfect shape is not rounding.
+[[nodiscard]] inline double least_noise(const Scene& scene) { return 1e-8 * scene.length; }
+
 /// Returns why shapes cannot share the tilt of a camera, with file and allowed values; empty if
 /// they can.
 [[nodiscard]] std::string why_no_camera_tilt(const std::vector<Scene>& scenes,
@@ -51,10 +55,10 @@ struct WireNumber {
 /// state d1 are unchanged too. A fit may rotate this clamp out
 /// of the scene's plane, which would otherwise define d1. If the scene determines d1 only up to
 /// `roll_tolerance`, d1 is level.
-/// @param flat  for each scene, whether its shape was measured in the scene's plane, which
+/// @param measured  a shape of each scene; a flat one was measured in the scene's plane, which
 /// determines d1
 [[nodiscard]] std::vector<Scene> with_nominal_frames(std::vector<Scene> scenes,
-                                                     const std::vector<bool>& flat,
+                                                     const MeasuredShapes& measured,
                                                      const MaterialFitOptions& options);
 
 /// Returns all numbers to fit, in this order: the logarithm of the factor on E; with `density` that

@@ -14,20 +14,10 @@
 namespace dlo::compare {
 namespace {
 
-/// Error of the energy model, divided by the length.
-constexpr double model_error_share = 1e-8;
 /// Longest step in log E for which the fit is nearly linear.
 constexpr double longest_log_step = 1;
 /// Largest last step of fits from which others start, in standard deviations.
 constexpr double coarse_step = 0.1;
-
-/// Returns the scenes whose numbers are fitted.
-std::vector<Scene> fitted_scenes(const std::vector<Scene>& scenes, const MeasuredShapes& measured,
-                                 const MaterialFitOptions& options) {
-  std::vector<bool> flat;
-  for (std::size_t i = 0; i < scenes.size(); ++i) flat.push_back(measured.is_flat(i));
-  return with_nominal_frames(scenes, flat, options);
-}
 
 /// Largest number of fits with updated weights, and relative change of the weight at which they
 /// end. Correlated errors carry less information than as many independent ones, which matters
@@ -100,7 +90,7 @@ WireProblem::WireProblem(const std::vector<Scene>& nominal, const std::vector<Me
                          MeasuredShapes& against, const MaterialFitOptions& asked,
                          bool with_density)
     : scenes(nominal), shapes(of), measured(against), options(asked), density(with_density) {
-  std::vector<Scene> fitted = fitted_scenes(scenes, measured, options);
+  std::vector<Scene> fitted = with_nominal_frames(scenes, measured, options);
   numbers = wire_numbers(fitted, shapes, options, density);
   scene_at = [fitted = std::move(fitted), changes = numbers](std::size_t shape,
                                                              const Eigen::VectorXd& values) {
@@ -143,7 +133,7 @@ double WireProblem::lowest() const {
 
 GaussNewtonOptions WireProblem::steps() const {
   return {.noise = options.noise,
-          .least_noise = least_noise(),
+          .least_noise = least_noise(scenes.front()),
           .lowest = lowest(),
           .highest = std::log(options.largest_ratio)};
 }
@@ -153,8 +143,6 @@ GaussNewtonOptions WireProblem::coarse_iteration_options() const {
   result.last_step = coarse_step;
   return result;
 }
-
-double WireProblem::least_noise() const { return model_error_share * scenes.front().length; }
 
 void WireProblem::descend(GaussNewton& fit) const {
   if (fit.descend()) return;
@@ -182,7 +170,7 @@ WireOptimum::WireOptimum(const WireProblem& problem, FittedRods& rods, const Eig
 void WireOptimum::descend() {
   problem_.descend(*fit_);
   errors_ = estimate_errors(*fit_, problem_.measured.frame_columns(), problem_.options.noise,
-                            problem_.least_noise());
+                            least_noise(problem_.scenes.front()));
 }
 
 /// Moves from the least deviance to the most likely E, marginalised over the other numbers. The two

@@ -49,8 +49,6 @@ struct WireProblem {
   [[nodiscard]] GaussNewtonOptions steps() const;
   /// Returns the options of a fit from which another one starts.
   [[nodiscard]] GaussNewtonOptions coarse_iteration_options() const;
-  /// Returns the error of the energy model, the lower bound of any noise [m].
-  [[nodiscard]] double least_noise() const;
 
   /// Minimises the deviance. @throws ConvergenceError if the iteration does not converge
   void descend(GaussNewton& fit) const;
