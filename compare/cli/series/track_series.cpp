@@ -183,10 +183,10 @@ Json dynamic_json(const DynamicTrack& dynamic, const compare::Track& track,
       {"fewer_terms", dynamic.fewer_terms},
       {"fewer_terms_change_over_length", dynamic.term_difference},
       {"quasi_static", track_errors_json(dynamic.quasi_static)}};
-  result["force_model"] = json_or_null(dynamic.force, [&](const TrackErrors& errors) {
+  result["force_model"] = json_or_null(dynamic.force, [](const compare::ForceErrors& errors) {
     Json entry = track_errors_json(errors);
-    entry["lag_s"] = dynamic.force_lag;
-    entry["error_without_lag_over_length"] = dynamic.force_error_without_lag;
+    entry["lag_s"] = errors.lag;
+    entry["error_without_lag_over_length"] = errors.error_without_lag;
     return entry;
   });
   result["stopped"] = json_or_null(dynamic.stopped, stop_json);

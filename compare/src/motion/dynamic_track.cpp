@@ -4,8 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
-#include <optional>
-#include <utility>
+#include <limits>
 
 #include "dlo/compare/deviation.hpp"
 #include "dlo/compare/error.hpp"
@@ -20,33 +19,22 @@ FrameClock clock_of(const Scene& scene, const TrackOptions& options) {
   return {scene, {options.from, options.to}, options.rates};
 }
 
-void add_errors(const std::vector<DynamicFrame>& frames, DynamicTrack& result) {
-  TrackErrors force;
-  double followed = 0;
-  for (const DynamicFrame& frame : frames) {
+void add_errors(const Track& track, double length, double step, DynamicTrack& result) {
+  ForceErrors force;
+  std::vector<Eigen::Matrix3Xd> leader;
+  std::vector<Eigen::Matrix3Xd> follower;
+  for (std::size_t i = 0; i < result.frames.size(); ++i) {
+    const DynamicFrame& frame = result.frames[i];
     result.quasi_static.add(frame.quasi_static_error, frame.time);
     if (!frame.force_error) continue;
     force.add(*frame.force_error, frame.time);
-    ++followed;
-  }
-  result.quasi_static.mean /= static_cast<double>(frames.size());
-  if (!(followed > 0)) return;
-  force.mean /= followed;
-  result.force = force;
-}
-
-/// Sets the lag of the force model, from the frames at equal times for which it exists.
-void add_lag(const Track& track, double length, double step, DynamicTrack& result) {
-  std::vector<Eigen::Matrix3Xd> leader;
-  std::vector<Eigen::Matrix3Xd> follower;
-  for (std::size_t i = 0; i < result.frames.size() && track.frames[i].force; ++i) {
-    leader.push_back(result.frames[i].points);
+    leader.push_back(frame.points);
     follower.push_back(track.frames[i].force->points);
   }
+  result.quasi_static.mean /= static_cast<double>(result.frames.size());
   if (leader.empty()) return;
-  const Lag lag = estimate_lag(leader, follower, step);
-  result.force_lag = lag.time;
-  result.force_error_without_lag = lag.rms / length;
+  force.finish(leader, follower, step, length);
+  result.force = force;
 }
 
 DynamicFrame frame_of(const energy_model::MovingFrame& moving, const TrackFrame& at_rest,
@@ -118,8 +106,7 @@ DynamicTrack dynamic_track(const Scene& scene, const Track& track, const TrackOp
     result.term_difference =
         std::max(result.term_difference, rms(track.arc_length, difference) / scene.length);
   }
-  add_errors(result.frames, result);
-  add_lag(track, scene.length, 1 / options.rates.frame_rate, result);
+  add_errors(track, scene.length, 1 / options.rates.frame_rate, result);
   return result;
 }
 

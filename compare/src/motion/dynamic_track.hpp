@@ -1,8 +1,6 @@
 #pragma once
 
-#include <limits>
 #include <optional>
-#include <string>
 #include <vector>
 
 #include "dlo/compare/scene.hpp"
@@ -49,9 +47,7 @@ struct DynamicTrack {
   /// earlier [-].
   double term_difference = 0;
   TrackErrors quasi_static;          ///< errors of the track's shapes
-  std::optional<TrackErrors> force;  ///< errors of the force model's shapes
-  double force_lag = std::numeric_limits<double>::quiet_NaN();  ///< see ForceTrackSummary::lag [s]
-  double force_error_without_lag = std::numeric_limits<double>::quiet_NaN();
+  std::optional<ForceErrors> force;  ///< errors of the force model's shapes
 };
 
 /// Simulates the rod of a track with inertia, along the same trajectories, whose velocities its

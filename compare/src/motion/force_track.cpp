@@ -31,10 +31,6 @@ Eigen::Matrix3Xd points_on_shape(const Discretisation& discretisation,
   return points;
 }
 
-double sum_of_squares(const Eigen::Matrix3Xd& a, const Eigen::Matrix3Xd& b) {
-  return (a - b).squaredNorm();
-}
-
 }  // namespace
 
 ForceTrack::ForceTrack(const Scene& now, const energy_model::Equilibrium& rod,
@@ -94,13 +90,22 @@ ForceFrame ForceTrack::frame(const energy_model::Equilibrium& rod,
   return frame;
 }
 
+void ForceErrors::finish(const std::vector<Eigen::Matrix3Xd>& leader,
+                         const std::vector<Eigen::Matrix3Xd>& follower, double step,
+                         double length) {
+  mean /= static_cast<double>(leader.size());
+  const Lag found = estimate_lag(leader, follower, step);
+  lag = found.time;
+  error_without_lag = found.rms / length;
+}
+
 Lag estimate_lag(const std::vector<Eigen::Matrix3Xd>& leader,
                  const std::vector<Eigen::Matrix3Xd>& follower, double step) {
   constexpr std::size_t most_lag_samples = 400;
   const std::size_t count = leader.size();
   double moved = 0;
   for (const Eigen::Matrix3Xd& shape : leader) {
-    moved = std::max(moved, sum_of_squares(shape, leader.front()));
+    moved = std::max(moved, (shape - leader.front()).squaredNorm());
   }
   const double rounding = 1e-9 * (leader.front().colwise() - leader.front().col(0)).norm();
   if (!(moved > rounding * rounding)) return {};
@@ -108,7 +113,7 @@ Lag estimate_lag(const std::vector<Eigen::Matrix3Xd>& leader,
   const auto squares_at = [&](std::size_t shift) {
     double sum = 0;
     for (std::size_t i = 0; i < count; i += stride) {
-      sum += sum_of_squares(follower[i], leader[i > shift ? i - shift : 0]);
+      sum += (follower[i] - leader[i > shift ? i - shift : 0]).squaredNorm();
     }
     return sum;
   };

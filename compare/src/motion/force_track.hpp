@@ -40,16 +40,25 @@ struct TrackErrors {
   }
 };
 
-/// Summary of the force model's frames, with their errors.
-struct ForceTrackSummary : TrackErrors {
+/// Errors of the force model's shapes, which may lag behind those of another model.
+struct ForceErrors : TrackErrors {
+  /// Lag of the shapes: the shift of time that brings them nearest to the other model's, and the
+  /// remaining RMS distance over all frames, over the length. NaN if the motion is too small.
+  double lag = std::numeric_limits<double>::quiet_NaN();  ///< [s], >= 0
+  double error_without_lag = std::numeric_limits<double>::quiet_NaN();
+
+  /// Divides the sum of the errors by the number of frames, and sets the lag.
+  /// @param leader, follower, step  as in estimate_lag();  @param length  of the rod [m]
+  void finish(const std::vector<Eigen::Matrix3Xd>& leader,
+              const std::vector<Eigen::Matrix3Xd>& follower, double step, double length);
+};
+
+/// Summary of the force model's frames, with their errors from the energy model.
+struct ForceTrackSummary : ForceErrors {
   std::string missing_reason;  ///< why frames are missing; empty if none is
   long steps_per_frame = 0;    ///< number of steps of the stepper
   double rest_error = 0;  ///< error of the first frame, at rest without lag, over the length [-]
   double median_seconds = 0;  ///< median duration of a frame's steps [s]
-  /// Lag of the shapes: the shift of time that brings them nearest to the energy model's, and the
-  /// remaining RMS distance over all frames, over the length. NaN if the motion is too small.
-  double lag = std::numeric_limits<double>::quiet_NaN();  ///< [s], >= 0
-  double error_without_lag = std::numeric_limits<double>::quiet_NaN();
 };
 
 /// The force model of a scene in simulated time; it starts at rest.

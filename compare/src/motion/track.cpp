@@ -251,11 +251,8 @@ class Tracker {
     result_.median_seconds = median(std::move(seconds_));
     if (leader.empty()) return;
     summary.rest_error = result_.frames.front().force->error_over_length;
-    summary.mean /= static_cast<double>(leader.size());
     summary.median_seconds = median(std::move(force_seconds_));
-    const Lag lag = estimate_lag(leader, follower, 1 / options_.rates.frame_rate);
-    summary.lag = lag.time;
-    summary.error_without_lag = lag.rms / scene_.length;
+    summary.finish(leader, follower, 1 / options_.rates.frame_rate, scene_.length);
   }
 
   const Scene& scene_;
