@@ -72,7 +72,7 @@ MaterialErrors::MaterialErrors(MaterialProfiles& material, const MaterialPoint& 
   const Eigen::Index frames = material.measured().frame_columns();
   const ErrorCovariance covariance = estimate.significant ? estimate.covariance : ErrorCovariance();
   if (estimate.significant) set_correlation_effects(covariance, series, frames);
-  std::vector<Nuisance> nuisances = frame_nuisances(frames);
+  std::vector<Nuisance> nuisances;
   if (material.has_density()) nuisances.push_back({frames + 1, 0, INFINITY});
   scatter_ = scatter_between(estimates_of_shapes(series, covariance, std::pow(noise_m_, 2), frames,
                                                  std::vector(material.scenes().size(), nuisances)),

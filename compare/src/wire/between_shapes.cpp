@@ -188,24 +188,20 @@ double share_beyond_chance(double share, std::size_t shapes) {
   return (share - expected_share) / (1 - expected_share);
 }
 
-std::vector<Nuisance> frame_nuisances(Eigen::Index frames) {
-  std::vector<Nuisance> result;
-  result.reserve(static_cast<std::size_t>(frames));
-  for (Eigen::Index k = 0; k < frames; ++k) result.push_back({k, 0, INFINITY});
-  return result;
-}
-
 std::vector<ShapeEstimate> estimates_of_shapes(
     const std::vector<ResidualSeries>& series, const ErrorCovariance& covariance, double variance,
-    Eigen::Index column, const std::vector<std::vector<Nuisance>>& nuisances) {
+    Eigen::Index frames, const std::vector<std::vector<Nuisance>>& nuisances) {
+  std::vector<Nuisance> of_frames;
+  for (Eigen::Index k = 0; k < frames; ++k) of_frames.push_back({k, 0, INFINITY});
   std::vector<ShapeEstimate> result;
   result.reserve(nuisances.size());
   for (std::size_t shape = 0; shape < nuisances.size(); ++shape) {
     std::vector<ResidualSeries> own;
     std::copy_if(series.begin(), series.end(), std::back_inserter(own),
                  [shape](const ResidualSeries& one) { return one.shape == shape; });
-    result.push_back(
-        estimate_of_shape(innovations(own, covariance), variance, column, nuisances[shape]));
+    std::vector<Nuisance> all = of_frames;
+    all.insert(all.end(), nuisances[shape].begin(), nuisances[shape].end());
+    result.push_back(estimate_of_shape(innovations(own, covariance), variance, frames, all));
   }
   return result;
 }

@@ -24,17 +24,14 @@ struct Nuisance {
   double prior_deviation = 0;  ///< prior standard deviation about zero; infinite: no prior
 };
 
-/// Returns nuisances without priors for the frames.
-/// @param frames  number of their columns, the first ones of the design
-[[nodiscard]] std::vector<Nuisance> frame_nuisances(Eigen::Index frames);
-
-/// Returns the estimate of one number from each shape alone: generalised least squares of the
-/// number and the shape's nuisances, linearised about the common fit.
+/// Returns the estimate of the first number from each shape alone: generalised least squares of the
+/// number, the frames and the shape's nuisances, linearised about the common fit.
 /// @param series  of all shapes; their errors have this covariance up to the variance [m^2]
-/// @param column  of the number;  @param nuisances  of each shape
+/// @param frames  number of columns of frames, before that of the number
+/// @param nuisances  of each shape
 [[nodiscard]] std::vector<ShapeEstimate> estimates_of_shapes(
     const std::vector<ResidualSeries>& series, const ErrorCovariance& covariance, double variance,
-    Eigen::Index column, const std::vector<std::vector<Nuisance>>& nuisances);
+    Eigen::Index frames, const std::vector<std::vector<Nuisance>>& nuisances);
 
 /// Distances of a shape's points across its rod, in a plane that all shapes share.
 struct CrossDistances {

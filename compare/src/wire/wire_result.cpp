@@ -78,7 +78,7 @@ class WireIntervals {
 
   [[nodiscard]] std::optional<ScatterBetweenShapes> scatter(double times_noise) const {
     const Eigen::Index frames = problem_.measured.frame_columns();
-    std::vector<std::vector<Nuisance>> nuisances(problem_.scenes.size(), frame_nuisances(frames));
+    std::vector<std::vector<Nuisance>> nuisances(problem_.scenes.size());
     for (std::size_t k = 0; k < problem_.numbers.size(); ++k) {
       const FittedNumber& described = problem_.numbers[k].described;
       if (!described.shape) continue;
