@@ -24,8 +24,10 @@
 
 namespace dlo::test {
 
+using nlohmann::json;
+
 /// Result of a command.
-struct Outcome {
+struct RunResult {
   int status = -1;
   std::string out;
   std::string err;
@@ -47,17 +49,17 @@ class Command : public Folder {
 
   /// Runs the command within this process, which is faster; arguments that need a shell start a
   /// process.
-  [[nodiscard]] Outcome run(const std::string& arguments) const {
+  [[nodiscard]] RunResult run(const std::string& arguments) const {
     std::optional<std::vector<std::string>> list = shell_words(arguments);
     if (!list) return run_process(arguments);
-    Outcome result;
+    RunResult result;
     result.status = cli::run_command(std::move(*list), result.out, result.err);
     return result;
   }
 
   /// Returns the standard output of a command, which must succeed.
   [[nodiscard]] std::string output_of(const std::string& arguments) const {
-    const Outcome result = run(arguments);
+    const RunResult result = run(arguments);
     EXPECT_EQ(result.status, 0) << arguments << "\n" << result.err;
     return result.out;
   }
@@ -65,7 +67,7 @@ class Command : public Folder {
   /// Expects this exit status, and all of `words` in the two outputs of a command.
   void expect_output(const std::string& arguments, int status,
                      const std::vector<std::string>& words) const {
-    const Outcome result = run(arguments);
+    const RunResult result = run(arguments);
     EXPECT_EQ(result.status, status) << arguments << "\n" << result.err;
     EXPECT_TRUE(has_all(result.out + result.err, words)) << arguments;
   }
@@ -74,10 +76,10 @@ class Command : public Folder {
   void succeeds(const std::string& arguments) const { (void)output_of(arguments); }
 
   /// Returns the document that a command prints with --format json, and expects this exit status.
-  [[nodiscard]] nlohmann::json json_of(const std::string& arguments, int status = 0) const {
-    const Outcome result = run(arguments + " --format json");
+  [[nodiscard]] json json_of(const std::string& arguments, int status = 0) const {
+    const RunResult result = run(arguments + " --format json");
     EXPECT_EQ(result.status, status) << arguments << "\n" << result.err;
-    return nlohmann::json::parse(result.out);
+    return json::parse(result.out);
   }
 
   /// Returns rows x, y, z, s [m] of the shape that `dlo solve` finds with these arguments.
@@ -105,7 +107,7 @@ class Command : public Folder {
   }
 
   /// Returns the largest difference of a coordinate of two documents' points [m].
-  static double largest_coordinate_difference(const nlohmann::json& a, const nlohmann::json& b) {
+  static double largest_coordinate_difference(const json& a, const json& b) {
     EXPECT_EQ(a.at("points_m").size(), b.at("points_m").size());
     double apart = 0;
     for (std::size_t i = 0; i < a.at("points_m").size(); ++i) {
@@ -118,16 +120,16 @@ class Command : public Folder {
   }
 
   /// Runs the command as a process, for tests of processes.
-  [[nodiscard]] Outcome run_process(const std::string& arguments) const {
+  [[nodiscard]] RunResult run_process(const std::string& arguments) const {
     return run_line(std::string(DLO_COMMAND) + " " + arguments);
   }
 
-  /// Runs a line in a shell. Outcome::err has the standard error of the line's last command only;
+  /// Runs a line in a shell. RunResult::err has the standard error of the line's last command only;
   /// the status is -1 if a signal ends the shell.
-  [[nodiscard]] Outcome run_line(const std::string& command) const {
+  [[nodiscard]] RunResult run_line(const std::string& command) const {
     const std::string line = command + " 2>" + path("stderr");
     std::FILE* pipe = ::popen(line.c_str(), "r");
-    Outcome result;
+    RunResult result;
     std::array<char, 4096> buffer{};
     std::size_t count = 0;
     while ((count = std::fread(buffer.data(), 1, buffer.size(), pipe)) > 0) {
@@ -143,7 +145,7 @@ class Command : public Folder {
   /// `names`.
   void expect_error(const std::string& arguments, int status,
                     const std::vector<std::string>& names) const {
-    const Outcome result = run(arguments);
+    const RunResult result = run(arguments);
     EXPECT_EQ(result.status, status) << arguments << "\n" << result.err;
     EXPECT_EQ(result.out, "") << arguments;
     EXPECT_EQ(std::count(result.err.begin(), result.err.end(), '\n'), 1) << result.err;

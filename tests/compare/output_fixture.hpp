@@ -14,7 +14,7 @@ namespace dlo::test {
 class Output : public Command {
  protected:
   /// Runs a line of bash. If it has several commands, the standard error contains that of all.
-  [[nodiscard]] Outcome bash(const std::string& script) const {
+  [[nodiscard]] RunResult bash(const std::string& script) const {
     std::ofstream(path("script")) << "cd " << path("") << "\ndlo=" << DLO_COMMAND << "\n"
                                   << script << "\n";
     return run_line("bash " + path("script"));

@@ -12,39 +12,39 @@
 #include "csv_table.hpp"
 #include "reading/scene_template.hpp"
 
+namespace dlo::compare {
 namespace {
 
 /// Returns the sweep whose table is data/effective_modulus.csv, as the README's command has it.
-dlo::compare::Sweep shipped_map() {
-  std::vector<dlo::compare::Axis> axes;
+Sweep shipped_map() {
+  std::vector<Axis> axes;
   for (const char* text :
        {"force_model.bookkeeping=consistent", "force_model.law=paper,hooke",
         "force_model.points=8,16,32,64", "gripper.0.direction=-60 deg,-30 deg,0 deg,30 deg,60 deg",
         "gamma=log:0.03:30:13"}) {
-    axes.push_back(dlo::compare::parse_axis(text));
+    axes.push_back(parse_axis(text));
   }
-  return {
-      dlo::compare::load_scene_template(std::string(DLO_DATA) + "/scenes/spring_steel_175.toml"),
-      dlo::compare::Grid(axes), dlo::compare::SweepModel::compare_chain};
+  return {load_scene_template(std::string(DLO_DATA) + "/scenes/spring_steel_175.toml"), Grid(axes),
+          SweepModel::compare_chain};
 }
 
 /// Returns the rows of data/effective_modulus.csv, its header first.
-std::vector<dlo::test::CsvRow> map_rows() {
+std::vector<test::CsvRow> map_rows() {
   std::ifstream stream(std::string(DLO_DATA) + "/effective_modulus.csv");
   std::ostringstream text;
   text << stream.rdbuf();
-  return dlo::test::csv_rows(text.str());
+  return csv_rows(text.str());
 }
 
 TEST(EffectiveModulusMap, IsWhatItsCommandWrites) {
-  const dlo::compare::Sweep sweep = shipped_map();
-  const std::vector<dlo::test::CsvRow> rows = map_rows();
+  const Sweep sweep = shipped_map();
+  const std::vector<test::CsvRow> rows = map_rows();
   ASSERT_EQ(static_cast<std::int64_t>(rows.size()), sweep.grid().size() + 1);
-  const dlo::test::CsvRow& columns = rows[0];
-  EXPECT_EQ(columns, dlo::test::csv_rows(sweep.header()).front());
+  const test::CsvRow& columns = rows[0];
+  EXPECT_EQ(columns, csv_rows(sweep.header()).front());
   for (std::int64_t row = 3; row < sweep.grid().size(); row += 47) {
-    const dlo::test::CsvRow& shipped = rows[static_cast<std::size_t>(row) + 1];
-    const dlo::test::CsvRow fresh = dlo::test::csv_rows(sweep.line(sweep.cells(row))).front();
+    const test::CsvRow& shipped = rows[static_cast<std::size_t>(row) + 1];
+    const test::CsvRow fresh = csv_rows(sweep.row(row)).front();
     ASSERT_EQ(fresh.size(), shipped.size());
     for (std::size_t i = 0; i < columns.size(); ++i) {
       const bool result = columns[i].find("_over_length") != std::string::npos ||
@@ -61,3 +61,4 @@ TEST(EffectiveModulusMap, IsWhatItsCommandWrites) {
 }
 
 }  // namespace
+}  // namespace dlo::compare

@@ -25,14 +25,10 @@
 #include "reading/scene_template.hpp"
 #include "scene_text.hpp"
 
+namespace dlo::compare {
 namespace {
 
-using dlo::compare::InputError;
-using dlo::compare::InputFile;
-using dlo::test::error_of;
-using dlo::test::has_all;
-
-class Reading : public dlo::test::Folder {};
+class Reading : public Folder {};
 
 /// Returns the messages of the readers of scenes, scene templates, parameters, materials, baselines
 /// and shapes for this file, in this order.
@@ -114,8 +110,7 @@ TEST_F(Reading, TellsThatAFileIsForOthers) {
   constexpr uid_t unprivileged = 65534;
   const bool root = ::geteuid() == 0;
   if (root && ::seteuid(unprivileged) != 0) GTEST_SKIP() << "cannot become another user";
-  const std::string message =
-      error_of<InputError>([&] { (void)dlo::compare::load_scene(path("a.toml")); });
+  const std::string message = error_of<InputError>([&] { (void)load_scene(path("a.toml")); });
   if (root) {
     ASSERT_EQ(::seteuid(0), 0);
   }
@@ -141,7 +136,7 @@ std::string repeated(const std::string& text, int times) {
 
 TEST(TextLimits, NothingIsNestedSoDeepThatAParserOverflows) {
   const auto scene = [](const std::string& text) {
-    return error_of<InputError>([&] { (void)dlo::compare::parse_scene(text, "s.toml"); });
+    return error_of<InputError>([&] { (void)parse_scene(text, "s.toml"); });
   };
   constexpr int many = 100'000;
   const std::string dots = "s.toml:2: a key of too many dotted parts (allowed: 32 levels)";
@@ -159,8 +154,8 @@ TEST(TextLimits, NothingIsNestedSoDeepThatAParserOverflows) {
 
 TEST(TextLimits, StringsAndCommentsNestNothing) {
   const auto reads = [](const std::string& line) {
-    const std::string text = line + "\n" + dlo::test::steel_rod + dlo::test::level_clamp;
-    return error_of<InputError>([&] { (void)dlo::compare::parse_scene(text, "s.toml"); });
+    const std::string text = line + "\n" + steel_rod + level_clamp;
+    return error_of<InputError>([&] { (void)parse_scene(text, "s.toml"); });
   };
   const std::string deep = repeated("[.{", 50);
   EXPECT_EQ(reads("# " + deep), "no error");
@@ -174,7 +169,7 @@ TEST(TextLimits, StringsAndCommentsNestNothing) {
 TEST(TextLimits, NumbersBeyondADoubleAreSaidToBe) {
   const auto scene = [](const std::string& number) {
     return error_of<InputError>(
-        [&] { (void)dlo::compare::parse_scene("[rod]\nlength = " + number + "\n", "s.toml"); });
+        [&] { (void)parse_scene("[rod]\nlength = " + number + "\n", "s.toml"); });
   };
   const auto expect = [&](const std::string& number, const std::string& words) {
     const std::string message = scene(number);
@@ -193,7 +188,7 @@ TEST(TextLimits, NumbersBeyondADoubleAreSaidToBe) {
 
 TEST(TextLimits, OfShapesAndSweeps) {
   const auto shape = [](const std::string& text) {
-    return error_of<InputError>([&] { (void)dlo::compare::parse_shape(text, "s.json", 1); });
+    return error_of<InputError>([&] { (void)parse_shape(text, "s.json", 1); });
   };
   EXPECT_EQ(shape(repeated("[\n", 300'000)),
             "s.json:33: brackets within brackets (allowed: 32 levels)");
@@ -203,7 +198,7 @@ TEST(TextLimits, OfShapesAndSweeps) {
       shape(R"({"a": "[[[[[[[[[[[[[[[[[[[[[[[[[[[[[[[[[[[[[[[\"", "points": [[0, 0], [1, 0]]})"),
       "no error");
   const std::string large(std::size_t{5} << 20, ' ');
-  EXPECT_EQ(error_of<InputError>([&] { (void)dlo::compare::parse_scene(large, "s.toml"); }),
+  EXPECT_EQ(error_of<InputError>([&] { (void)parse_scene(large, "s.toml"); }),
             "s.toml: 5242880 bytes (allowed: up to 4194304 of TOML)");
 }
 
@@ -215,7 +210,7 @@ TEST(TextLimits, OfThePartsOfAScene) {
   const auto scene = [&](int grippers, int loads, int planes) {
     const std::string text =
         rod + repeated(gripper, grippers) + repeated(load, loads) + repeated(plane, planes);
-    return error_of<InputError>([&] { (void)dlo::compare::parse_scene(text, "s.toml"); });
+    return error_of<InputError>([&] { (void)parse_scene(text, "s.toml"); });
   };
   EXPECT_EQ(scene(500, 10'000, 1'000), "no error");
   EXPECT_EQ(scene(501, 0, 0), "s.toml:5: gripper: 501 given (allowed: 1 to 500)");
@@ -224,7 +219,7 @@ TEST(TextLimits, OfThePartsOfAScene) {
 }
 
 TEST(TextLimits, OfVariedFields) {
-  const dlo::compare::SceneTemplate scene("[rod]\nlength = 1\n", "s.toml");
+  const SceneTemplate scene("[rod]\nlength = 1\n", "s.toml");
   const auto vary = [&](const std::string& field, const std::string& value) {
     return error_of<InputError>([&] { (void)scene.with({{field, value}}); });
   };
@@ -233,3 +228,4 @@ TEST(TextLimits, OfVariedFields) {
 }
 
 }  // namespace
+}  // namespace dlo::compare

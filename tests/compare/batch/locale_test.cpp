@@ -20,12 +20,8 @@
 #include "shape/write_vtk.hpp"
 #include "toml/quantity.hpp"
 
+namespace dlo::compare {
 namespace {
-
-using dlo::test::has_all;
-using dlo::test::has_none;
-
-using namespace dlo::compare;
 
 class CommaPunctuation : public std::numpunct<char> {
  protected:
@@ -36,7 +32,7 @@ class CommaPunctuation : public std::numpunct<char> {
 
 /// Fixture that sets a locale with a decimal comma in the C++ library, and in the C library too if
 /// localedef can make one.
-class DecimalComma : public dlo::test::Command {
+class DecimalComma : public Command {
  protected:
   void SetUp() override {
     Command::SetUp();
@@ -110,3 +106,4 @@ TEST_F(DecimalComma, ChangesNothingThatIsWritten) {
 }
 
 }  // namespace
+}  // namespace dlo::compare

@@ -8,13 +8,8 @@
 
 #include "calibrate_fixture.hpp"
 
+namespace dlo::compare {
 namespace {
-
-using dlo::test::CalibrateCommand;
-using dlo::test::has_all;
-using dlo::test::has_none;
-using dlo::test::Outcome;
-using nlohmann::json;
 
 TEST_F(CalibrateCommand, TellsTheJointsOfAChain) {
   const std::string a = scene_of("a.toml", "5 GPa", 0);
@@ -66,7 +61,7 @@ TEST_F(CalibrateCommand, WritesParametersThatTheOtherCommandsRead) {
 TEST_F(CalibrateCommand, TellsWhatMadeTheTargetMissed) {
   const std::string stiff = scene_of("a.toml", "5 GPa", 0);
   const auto missed = [&](const std::string& arguments) {
-    const Outcome result = run("calibrate " + arguments);
+    const RunResult result = run("calibrate " + arguments);
     EXPECT_EQ(result.status, 1) << arguments;
     return result.out;
   };
@@ -111,3 +106,4 @@ TEST_F(CalibrateCommand, KeepsAStepperThatHasNoParameters) {
 }
 
 }  // namespace
+}  // namespace dlo::compare

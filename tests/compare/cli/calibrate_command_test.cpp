@@ -12,12 +12,8 @@
 #include "calibrate_fixture.hpp"
 #include "scene_text.hpp"
 
+namespace dlo::compare {
 namespace {
-
-using dlo::test::CalibrateCommand;
-using dlo::test::has_all;
-using dlo::test::has_none;
-using nlohmann::json;
 
 TEST_F(CalibrateCommand, FindsTheModulusOfMeasuredShapes) {
   const std::string a = scene_of("a.toml", "5 GPa", 0);
@@ -116,7 +112,7 @@ TEST_F(CalibrateCommand, SaysWhenTheShapesDoNotIdentifyE) {
 TEST_F(CalibrateCommand, AWeightlessArcGetsItsCurvatureAndNoStiffness) {
   const std::string wire = scene(
       "gravity = [0, 0, 0]\n[rod]\nlength = 1\nbending_stiffness = 1e-3\nmass_per_length = 0.01\n" +
-      dlo::test::level_clamp);
+      level_clamp);
   std::vector<std::vector<double>> points;
   for (int i = 0; i <= 20; ++i) {
     const double s = i / 20.0;
@@ -158,7 +154,7 @@ TEST_F(CalibrateCommand, CsvIsATableAndTomlHasRemarks) {
   const std::string shape = write_exact_shape(a, "a.csv");
   for (const std::string& arguments :
        {words({"calibrate", a}), words({"calibrate", a, "--shape", shape})}) {
-    EXPECT_TRUE(dlo::test::is_table(output_of(words({arguments, "--format csv"}))));
+    EXPECT_TRUE(is_table(output_of(words({arguments, "--format csv"}))));
     EXPECT_TRUE(has_all(run(words({arguments, "--format toml"})).out, {"# "}));
   }
 }
@@ -214,3 +210,4 @@ TEST_F(CalibrateCommand, AShapeInAnotherUnitIsRefusedWithTheLikelyOne) {
 }
 
 }  // namespace
+}  // namespace dlo::compare

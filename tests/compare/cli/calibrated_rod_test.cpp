@@ -15,19 +15,16 @@
 #include "scene_text.hpp"
 #include "scenes.hpp"
 
+namespace dlo::compare {
 namespace {
 
-using namespace dlo::compare;
-using dlo::test::error_of;
-using dlo::test::has_all;
-
-std::string refusal(const std::string& text, const Scene& scene = dlo::test::heavy_scene(10, 0)) {
+std::string refusal(const std::string& text, const Scene& scene = heavy_scene(10, 0)) {
   return error_of<InputError>(
       [&] { return calibrated_scene(scene, parse_calibrated_rod(text, "found.toml")); });
 }
 
 TEST(CalibratedRod, ReplacesWhatTheSceneSays) {
-  Scene scene = dlo::test::heavy_scene(10, 30);
+  Scene scene = heavy_scene(10, 30);
   scene.given_bending_stiffness = 2;
   scene.given_mass_per_length = 1;
   const CalibratedRod rod = parse_calibrated_rod(
@@ -60,14 +57,14 @@ TEST(CalibratedRod, RefusesWhatItCannotReplace) {
   EXPECT_TRUE(has_all(refusal("damping = -0.01\n" + material), {"found.toml:1: damping", ">= 0"}));
 }
 
-class CalibratedCommand : public dlo::test::Command {
+class CalibratedCommand : public Command {
  protected:
   /// Writes a scene file and returns its path.
   std::string wire(const std::string& name, const std::string& EI, const std::string& rod,
                    double direction) {
-    return write(
-        name, "[rod]\nlength = 1\nmass_per_length = 0.05\nbending_stiffness = " + EI + "\n" + rod +
-                  dlo::test::gripper_text(fmt::format("direction = \"{} deg\"", direction)));
+    return write(name, "[rod]\nlength = 1\nmass_per_length = 0.05\nbending_stiffness = " + EI +
+                           "\n" + rod +
+                           gripper_text(fmt::format("direction = \"{} deg\"", direction)));
   }
 };
 
@@ -93,3 +90,4 @@ TEST_F(CalibratedCommand, AHoldOutShapeIsPredicted) {
 }
 
 }  // namespace
+}  // namespace dlo::compare

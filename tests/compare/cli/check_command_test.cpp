@@ -10,14 +10,8 @@
 #include "command_fixture.hpp"
 #include "scene_text.hpp"
 
+namespace dlo::compare {
 namespace {
-
-using dlo::test::has_all;
-using dlo::test::has_none;
-
-namespace compare = dlo::compare;
-using dlo::test::Command;
-using nlohmann::json;
 
 class CheckCommand : public Command {
  protected:
@@ -26,7 +20,7 @@ class CheckCommand : public Command {
   std::string level_rod(double length, double stiffness, double mass_per_length) {
     return scene(fmt::format("[rod]\nlength = {}\nbending_stiffness = {}\nmass_per_length = {}\n",
                              length, stiffness, mass_per_length) +
-                 dlo::test::level_clamp);
+                 level_clamp);
   }
 };
 
@@ -116,13 +110,13 @@ TEST_F(CheckCommand, TheReportIsOnePage) {
   EXPECT_EQ(run(check + file).status, 2);
   EXPECT_FALSE(std::filesystem::exists(page)) << "nothing is written of what could not be read";
   const std::string solved = path("a<b>&.csv");
-  succeeds("solve " + steel() + " --model chain --format csv -o " + compare::shell_word(solved));
-  succeeds(check + compare::shell_word(solved));
+  succeeds("solve " + steel() + " --model chain --format csv -o " + shell_word(solved));
+  succeeds(check + shell_word(solved));
   const std::string html = read(page);
   EXPECT_TRUE(has_all(
       html, {"<p class=\"badge fail\">", "a&lt;b&gt;&amp;.csv\n", "explained by", "106.2 mm"}));
   EXPECT_TRUE(has_none(html, {"a<b>", "src=\"http", "href=\"http", "@import", "url("}));
-  succeeds(check + compare::shell_word(solved) + " --tolerance 30%");
+  succeeds(check + shell_word(solved) + " --tolerance 30%");
   EXPECT_TRUE(has_all(read(page), {"<p class=\"badge pass\">"}));
   // The report must not overwrite an input file.
   expect_error(check + page, 2, {"is read too"});
@@ -130,7 +124,7 @@ TEST_F(CheckCommand, TheReportIsOnePage) {
 
 TEST_F(CheckCommand, MarkdownIsASummary) {
   const std::string file = path("a|b*.csv");
-  const std::string quoted = compare::shell_word(file);
+  const std::string quoted = shell_word(file);
   succeeds("solve " + steel() + " --model chain --format csv -o " + quoted);
   const std::string check = "check " + steel() + " --format markdown --shape " + quoted;
   const std::string summary = run(check + " --tolerance 1%").out;
@@ -269,3 +263,4 @@ TEST_F(CheckCommand, BadInputIsOneLineAndStatusTwo) {
 }
 
 }  // namespace
+}  // namespace dlo::compare

@@ -15,14 +15,10 @@
 #include "option/effect.hpp"
 #include "scene_text.hpp"
 
+namespace dlo::compare {
 namespace {
 
-using dlo::test::Command;
-using dlo::test::has_all;
-using dlo::test::Outcome;
-using nlohmann::json;
-
-const std::string good = dlo::test::steel_rod + dlo::test::gripper_text("direction = \"-175 deg\"");
+const std::string good = steel_rod + gripper_text("direction = \"-175 deg\"");
 
 TEST_F(Command, CompareWritesTheContractsJson) {
   const json document = json_of("compare " + steel() + " " + scene(good));
@@ -42,9 +38,9 @@ TEST_F(Command, PaperHasTheSameNumbersInJsonAndInCsv) {
   succeeds("paper --format json -o " + path("paper.json"));
   const json document = json::parse(read(path("paper.json")));
   EXPECT_EQ(document.at("schema"), "dlo/paper/1");
-  const std::vector<dlo::test::CsvRow> rows = dlo::test::csv_rows(output_of("paper --format csv"));
+  const std::vector<test::CsvRow> rows = csv_rows(output_of("paper --format csv"));
   ASSERT_GT(rows.size(), 1000U);
-  for (const dlo::test::CsvRow& row : std::span(rows).subspan(1)) {
+  for (const test::CsvRow& row : std::span(rows).subspan(1)) {
     const json& value = document.at(json::json_pointer("/" + row.at(0)));
     if (!value.is_number() || row[0].find("/cost/") != std::string::npos) continue;
     EXPECT_NEAR(std::stod(row.at(1)), value, 1e-10 * std::abs(value.get<double>())) << row[0];
@@ -78,8 +74,9 @@ TEST_F(Command, StabilityWritesTheContractsJsonAndFailsForNothingButAutoAndImpli
   EXPECT_EQ(document.at("cases")[6].at("outcome"), "pass");
   EXPECT_LT(document.at("cases")[6].at("steps").get<long>(), 100);
   EXPECT_EQ(run("stability --case crossed --stepper auto --max-steps-auto 100").status, 1);
-  const Outcome refused = run("stability --case \"pulled too far\" --stepper auto");
-  const Outcome no_number = run("stability --case \"pulled too far\" --stepper auto --format csv");
+  const RunResult refused = run("stability --case \"pulled too far\" --stepper auto");
+  const RunResult no_number =
+      run("stability --case \"pulled too far\" --stepper auto --format csv");
   EXPECT_TRUE(has_all(no_number.out, {"\npulled too far,auto,refused,0,,false,"}));
   EXPECT_EQ(refused.status, 0);
   EXPECT_TRUE(has_all(refused.out, {"no more than the 0.5 m of rod"}));
@@ -87,7 +84,7 @@ TEST_F(Command, StabilityWritesTheContractsJsonAndFailsForNothingButAutoAndImpli
 
 TEST_F(Command, StabilityMapTakesAScene) {
   const std::string small = " --columns 2 --rows 8 --map-steps 2000";
-  const Outcome csv = run("stability " + scene(good) + " --map cF-cc --format csv" + small);
+  const RunResult csv = run("stability " + scene(good) + " --map cF-cc --format csv" + small);
   EXPECT_EQ(std::count(csv.out.begin(), csv.out.end(), '\n'), 1 + 2 * 8) << csv.err;
   const json document = json_of("stability --map cF-cc" + small);
   EXPECT_EQ(document.at("schema"), "dlo/stability-map/1");
@@ -171,16 +168,16 @@ std::string with_value(const std::string& option) {
 }
 
 /// Returns the words of a command with which all conditions of a row hold.
-std::string with_conditions(const std::string& command, const dlo::cli::IneffectiveOptions& row,
+std::string with_conditions(const std::string& command, const cli::IneffectiveOptions& row,
                             const std::string& scene) {
   const std::map<std::string, std::string> arguments = {
       {"regress", scene + " --baseline b.toml"}, {"suite", "--write d"}, {"stability", ""}};
   const auto own = arguments.find(command);
   std::string line = command + " " + (own == arguments.end() ? scene : own->second);
-  for (const dlo::cli::OptionCondition& condition : row.conditions) {
+  for (const cli::OptionCondition& condition : row.conditions) {
     if (condition.values.empty()) continue;
     const std::string& value = condition.values.front();
-    const bool has_example = value == dlo::cli::any_value || value == dlo::cli::whole_number;
+    const bool has_example = value == cli::any_value || value == cli::whole_number;
     line += " " + (has_example ? with_value(condition.option) : condition.option + " " + value);
   }
   return line;
@@ -189,10 +186,10 @@ std::string with_conditions(const std::string& command, const dlo::cli::Ineffect
 TEST_F(Command, EveryOptionWithoutEffectIsRefusedOrReported) {
   int refused = 0;
   int stated = 0;
-  std::vector<std::pair<std::string, dlo::cli::IneffectiveOptions>> rows;
-  for (const dlo::cli::NamedCommand& command : dlo::cli::all_commands) {
+  std::vector<std::pair<std::string, cli::IneffectiveOptions>> rows;
+  for (const cli::NamedCommand& command : cli::all_commands) {
     const std::string name(command.name);
-    for (auto& row : dlo::cli::ineffective_options(name)) rows.emplace_back(name, std::move(row));
+    for (auto& row : cli::ineffective_options(name)) rows.emplace_back(name, std::move(row));
   }
   for (const auto& [command, row] : rows) {
     const std::string line = with_conditions(command, row, steel());
@@ -200,11 +197,11 @@ TEST_F(Command, EveryOptionWithoutEffectIsRefusedOrReported) {
       const std::string all = option == "--format" ? line : line + " " + with_value(option);
       const std::vector<std::string> words = {
           option, option == "--format" ? "not available" : "no effect", "(allowed: " + row.allowed};
-      if (row.response == dlo::cli::NoEffect::refused) {
+      if (row.response == cli::NoEffect::refused) {
         expect_error(all, 2, words);
         ++refused;
       } else {
-        const Outcome outcome = run(all);
+        const RunResult outcome = run(all);
         if (outcome.status == 2) continue;  // the value is an error of its own
         EXPECT_TRUE(has_all(outcome.err, words)) << all;
         ++stated;
@@ -226,3 +223,4 @@ TEST_F(Command, HelpIsACommandAndUnknownOptionsAreNamed) {
 }
 
 }  // namespace
+}  // namespace dlo::compare

@@ -10,13 +10,10 @@
 
 #include "command_fixture.hpp"
 
+namespace dlo::compare {
 namespace {
 
-using dlo::test::has_all;
-using dlo::test::has_none;
-using nlohmann::json;
-
-class ContactCommand : public dlo::test::Command {
+class ContactCommand : public Command {
  protected:
   /// Writes the scene of a cable on a floor; a second floor is out of reach. Returns its path.
   std::string lying() {
@@ -126,3 +123,4 @@ TEST_F(ContactCommand, SolveSaysWhereARodCrossesItself) {
 }
 
 }  // namespace
+}  // namespace dlo::compare

@@ -10,17 +10,14 @@
 #include "command_fixture.hpp"
 #include "dlo/compare/deviation.hpp"
 
+namespace dlo::compare {
 namespace {
-
-using dlo::test::Command;
-using dlo::test::has_all;
-using dlo::test::Outcome;
 
 class Reference : public Command {
  protected:
   /// Runs a bash script in the test's folder, with data/ and a simulator next to it and dlo in the
   /// path.
-  [[nodiscard]] Outcome bash(const std::string& script) const {
+  [[nodiscard]] RunResult bash(const std::string& script) const {
     const std::filesystem::path command(DLO_COMMAND);
     std::ofstream(path("script")) << "set -e\ncd " << path("") << "\n[ -e data ] || ln -s "
                                   << DLO_DATA << " data\n[ -e mine.py ] || cp " << DLO_DATA
@@ -64,7 +61,7 @@ TEST_F(Reference, EveryExampleOfEveryHelpWorks) {
       continue;
     }
     for (const std::string& example : examples) {
-      const Outcome result = bash(example);
+      const RunResult result = bash(example);
       EXPECT_EQ(result.status, 0) << example << "\n" << result.err;
     }
   }
@@ -87,7 +84,7 @@ TEST_F(Reference, NoOptionOfAnyCommandTakesAnEmptyValue) {
 
 TEST_F(Reference, ManualPageOfThePackageListsEveryCommand) {
   if (bash("command -v help2man").status != 0) GTEST_SKIP() << "no help2man";
-  const Outcome page = bash("help2man --no-info --name models dlo");
+  const RunResult page = bash("help2man --no-info --name models dlo");
   EXPECT_EQ(page.status, 0) << page.err;
   EXPECT_TRUE(has_all(page.out, {".SH NAME\ndlo", ".SH SYNOPSIS", "Exit status: 0 good"}));
   for (const std::string& command : commands()) {
@@ -96,3 +93,4 @@ TEST_F(Reference, ManualPageOfThePackageListsEveryCommand) {
 }
 
 }  // namespace
+}  // namespace dlo::compare

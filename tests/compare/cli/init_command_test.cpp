@@ -15,16 +15,8 @@
 #include "reading/new_scene.hpp"
 #include "toml/scene_keys.hpp"
 
+namespace dlo::compare {
 namespace {
-
-using dlo::compare::parse_scene;
-using dlo::compare::Scene;
-using dlo::compare::scene_text;
-using dlo::compare::SceneChoices;
-using dlo::test::Command;
-using dlo::test::has_all;
-using dlo::test::Outcome;
-using nlohmann::json;
 
 /// Returns the optional paragraphs of a scene file, without the # of their lines.
 std::vector<std::string> optional_paragraphs(const std::string& text) {
@@ -39,7 +31,7 @@ std::vector<std::string> optional_paragraphs(const std::string& text) {
 }
 
 TEST_F(Command, WithoutArgumentsTellsWhatThereIsToDo) {
-  const Outcome result = run("");
+  const RunResult result = run("");
   EXPECT_EQ(result.status, 0);
   EXPECT_EQ(result.err, "");
   EXPECT_EQ(result.out, run("--help").out);
@@ -70,7 +62,7 @@ TEST_F(Command, InitWritesASceneThatSolves) {
   EXPECT_TRUE(
       has_all(output_of("init " + file + " --length 2m --diameter '6 mm' --material silicone"),
               {"dlo solve " + file}));
-  const Scene scene = dlo::compare::load_scene(file);
+  const Scene scene = load_scene(file);
   EXPECT_EQ(scene.name, "cable");
   EXPECT_EQ(scene.length, 2);
   EXPECT_EQ(scene.diameter, 0.006);
@@ -83,7 +75,7 @@ TEST_F(Command, InitWritesASceneThatSolves) {
 TEST_F(Command, InitTakesANameAndAMaterialOfOnesOwn) {
   const std::string arguments = "--youngs-modulus '5 MPa' --density 1100 --direction '[0, 0, 1]'";
   const std::string result = output_of("init '" + path("my hose") + "' " + arguments);
-  const Scene scene = dlo::compare::load_scene(path("my_hose.toml"));
+  const Scene scene = load_scene(path("my_hose.toml"));
   EXPECT_EQ(scene.name, "my hose");
   EXPECT_EQ(scene.material.youngs_modulus, 5e6);
   EXPECT_EQ(*scene.grippers.front().direction, Eigen::Vector3d::UnitZ());
@@ -96,7 +88,7 @@ TEST_F(Command, InitWritesASceneWithZUp) {
   const std::string rod = " --direction '-30 deg' --length '0.5 m' --up ";
   succeeds("init " + path("y.toml") + rod + "y");
   succeeds("init " + path("z.toml") + rod + "z");
-  const Scene z = dlo::compare::load_scene(path("z.toml"));
+  const Scene z = load_scene(path("z.toml"));
   EXPECT_EQ(z.gravity, Eigen::Vector3d(0, 0, -9.81));
   const json at_y = json_of("solve " + path("y.toml"));
   const json at_z = json_of("solve " + path("z.toml"));
@@ -120,7 +112,7 @@ TEST_F(Command, InitNeverOverwritesUnasked) {
   expect_error("init " + path("new.toml") + " --diameter -1", 2, {"--diameter", "-1"});
   EXPECT_FALSE(std::filesystem::exists(path("new.toml")));
   succeeds("init --force " + file);
-  EXPECT_NO_THROW((void)dlo::compare::load_scene(file));
+  EXPECT_NO_THROW((void)load_scene(file));
 }
 
 TEST_F(Command, InitTakesAnyNameAndNamesTheOptionThatIsWrong) {
@@ -132,7 +124,7 @@ TEST_F(Command, InitTakesAnyNameAndNamesTheOptionThatIsWrong) {
     const std::size_t at = result.find("dlo solve ") + 4;
     EXPECT_EQ(run(result.substr(at, result.find("      ", at) - at)).status, 0) << result;
   }
-  EXPECT_EQ(dlo::compare::load_scene(path("2025.toml")).name, "2025");
+  EXPECT_EQ(load_scene(path("2025.toml")).name, "2025");
   expect_error("init " + path(std::string(300, 'a')), 2, {"too long"});
   const std::string init = "init " + path("b") + " ";
   expect_error(init + "--length '6 mm' --diameter '2 m'", 2, {"--diameter = 2 m", "thicker"});
@@ -156,7 +148,7 @@ TEST(SceneText, IsValidWithAnyAndAllOptionalPartsAndSolves) {
     std::string all = text;
     for (const std::string& paragraph : paragraphs) {
       const Scene scene = parse_scene(text + paragraph, "scene.toml");
-      EXPECT_NO_THROW((void)solve(scene, dlo::compare::Model::energy)) << text << paragraph;
+      EXPECT_NO_THROW((void)solve(scene, Model::energy)) << text << paragraph;
       all += paragraph;
     }
     const Scene scene = parse_scene(all, "scene.toml");
@@ -164,14 +156,14 @@ TEST(SceneText, IsValidWithAnyAndAllOptionalPartsAndSolves) {
     EXPECT_EQ(scene.loads.size(), 1U);
     EXPECT_EQ(scene.sections.size(), 1U);
     EXPECT_EQ(scene.obstacles.size(), 1U);
-    EXPECT_NO_THROW((void)solve(scene, dlo::compare::Model::energy)) << all;
+    EXPECT_NO_THROW((void)solve(scene, Model::energy)) << all;
   }
 }
 
 TEST(SceneText, ExplainsEveryKeyThatAScenesTablesKnow) {
   const std::string text = scene_text({});
-  for (const dlo::compare::SceneTable& table : dlo::compare::scene_tables()) {
-    for (const dlo::compare::SceneKey& key : table.keys) {
+  for (const SceneTable& table : scene_tables()) {
+    for (const SceneKey& key : table.keys) {
       if (key.words.empty()) continue;
       EXPECT_TRUE(std::regex_search(text, std::regex("\n(#|#   )?" + key.name + " = ")))
           << key.name;
@@ -180,3 +172,4 @@ TEST(SceneText, ExplainsEveryKeyThatAScenesTablesKnow) {
 }
 
 }  // namespace
+}  // namespace dlo::compare

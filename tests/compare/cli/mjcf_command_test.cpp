@@ -16,14 +16,8 @@
 #include "dlo/compare/solve.hpp"
 #include "dlo/energy_model/polygon.hpp"
 
+namespace dlo::compare {
 namespace {
-
-using dlo::test::has_all;
-
-namespace energy = dlo::energy_model;
-using dlo::test::Command;
-using dlo::test::Outcome;
-using nlohmann::json;
 
 const std::vector<std::string> models = {"composite.xml", "chain.xml", "hinges.xml",
                                          "two_constraints.xml", "capsule_caps.xml"};
@@ -38,11 +32,11 @@ std::string model_text(const std::string& name) {
 /// Returns the points of the model's segments at rest. The springs are linear in the angle. Half of
 /// the weight of each segment acts at each of its ends, as for a uniform rigid segment. If a clamp
 /// holds a body, both ends of the body are fixed.
-Eigen::Matrix3Xd chain_at_rest(const dlo::compare::Scene& scene) {
+Eigen::Matrix3Xd chain_at_rest(const Scene& scene) {
   const Eigen::Index n = scene.model->segments;
   const double h = scene.length / static_cast<double>(n);
-  energy::PolygonProblem problem;
-  problem.law = energy::JointLaw::linear;
+  energy_model::PolygonProblem problem;
+  problem.law = energy_model::JointLaw::linear;
   problem.rest_lengths.setConstant(n, h);
   problem.stiffness = scene.bending_stiffness();
   const Eigen::Vector3d weight = scene.mass() * scene.gravity / static_cast<double>(n);
@@ -52,7 +46,7 @@ Eigen::Matrix3Xd chain_at_rest(const dlo::compare::Scene& scene) {
   problem.node_forces.setZero(3, n + 1);
   problem.node_forces.leftCols(n).colwise() += weight / 2;
   problem.node_forces.rightCols(n).colwise() += weight / 2;
-  for (const dlo::compare::Gripper& gripper : scene.grippers) {
+  for (const Gripper& gripper : scene.grippers) {
     const auto point = static_cast<Eigen::Index>(std::lround(gripper.at / h));
     problem.held.push_back({point, gripper.position});
     if (!gripper.direction) continue;
@@ -62,9 +56,10 @@ Eigen::Matrix3Xd chain_at_rest(const dlo::compare::Scene& scene) {
   std::vector<double> s;
   for (Eigen::Index i = 0; i <= n; ++i)
     s.push_back(std::min(scene.length, static_cast<double>(i) * h));
-  const dlo::compare::Solution rod = dlo::compare::solve(scene, dlo::compare::Model::energy, {}, s);
-  const energy::PolygonResult rest = energy::solve_polygon(problem, rod.shape.points, {});
-  EXPECT_TRUE(energy::succeeded(rest.status)) << scene.name;
+  const Solution rod = solve(scene, Model::energy, {}, s);
+  const energy_model::PolygonResult rest =
+      energy_model::solve_polygon(problem, rod.shape.points, {});
+  EXPECT_TRUE(energy_model::succeeded(rest.status)) << scene.name;
   return rest.points;
 }
 
@@ -72,7 +67,7 @@ class MjcfCommand : public Command {
  protected:
   /// Writes the positions of a model's bodies at rest, without the end of the last body.
   std::string starts(const std::string& name) {
-    const Eigen::Matrix3Xd points = chain_at_rest(dlo::compare::load_scene(model(name)));
+    const Eigen::Matrix3Xd points = chain_at_rest(load_scene(model(name)));
     std::vector<std::vector<double>> rows;
     for (Eigen::Index i = 0; i + 1 < points.cols(); ++i) {
       rows.push_back({points(0, i), points(1, i), points(2, i)});
@@ -102,10 +97,11 @@ TEST_F(MjcfCommand, AModelWithAnotherSpringFailsWithTheCause) {
   const std::size_t end = text.find('"', at + 11);
   text.replace(at, end - at, "stiffness=\"0.96510");  // twice as stiff
   std::ofstream(path("stiff.xml")) << text;
-  const Outcome result =
+  const RunResult result =
       run(words({"check", path("stiff.xml"), "--shape", points}) + "--tolerance 1%");
   EXPECT_EQ(result.status, 1);
   EXPECT_TRUE(has_all(result.out, {"springs of 0.5"}));
 }
 
 }  // namespace
+}  // namespace dlo::compare

@@ -7,10 +7,8 @@
 
 #include "command_fixture.hpp"
 
+namespace dlo::compare {
 namespace {
-
-using dlo::test::Command;
-using nlohmann::json;
 
 class ModesCommand : public Command {
  protected:
@@ -43,3 +41,4 @@ TEST_F(ModesCommand, BadInputIsOneLineAndItsStatus) {
 }
 
 }  // namespace
+}  // namespace dlo::compare

@@ -14,14 +14,14 @@
 #include "../../says.hpp"
 #include "command_fixture.hpp"
 
+namespace dlo::compare {
 namespace {
 
-using nlohmann::json;
 using testing::ContainsRegex;
 using testing::HasSubstr;
 using testing::StartsWith;
 
-class MotionCommand : public dlo::test::Command {
+class MotionCommand : public Command {
  protected:
   void SetUp() override {
     Command::SetUp();
@@ -164,9 +164,8 @@ TEST_F(MotionCommand, WhatCalibrateWritesMakesTheMotionRight) {
   write("softer.toml", swung(0.015));
   const std::string found = path("found.toml");
   succeeds(words({"calibrate", path("softer.toml"), "--motion", path("markers.csv"), "-o", found}));
-  EXPECT_TRUE(
-      dlo::test::has_all(read(found), {"bending_stiffness = 2.0", "\nmass_per_length = 5.0",
-                                       "\ndamping = ", "# s, 95 %: ", "1 recorded motion,"}));
+  EXPECT_TRUE(has_all(read(found), {"bending_stiffness = 2.0", "\nmass_per_length = 5.0",
+                                    "\ndamping = ", "# s, 95 %: ", "1 recorded motion,"}));
   const std::string as_found = " --dynamic --calibrated " + found;
   succeeds(words({"check", path("softer.toml"), "--motion", path("markers.csv"),
                   "--tolerance 0.01%" + as_found}));
@@ -228,3 +227,4 @@ TEST_F(MotionCommand, CalibrateRefusesRowsInWhichTheRodDoesNotMove) {
 }
 
 }  // namespace
+}  // namespace dlo::compare

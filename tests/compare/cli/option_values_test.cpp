@@ -7,12 +7,8 @@
 #include "command_fixture.hpp"
 #include "scene_text.hpp"
 
+namespace dlo::compare {
 namespace {
-
-using dlo::test::Command;
-using dlo::test::has_all;
-using dlo::test::has_none;
-using dlo::test::Outcome;
 
 TEST_F(Command, NumbersOfOptionsAreInTheirRange) {
   const std::string solve = words({"solve", steel(), "--model force"});
@@ -31,8 +27,7 @@ TEST_F(Command, NumbersOfOptionsAreInTheirRange) {
   expect_error("solve " + steel() + " --samples 1000001", 2, {"--samples", "2 to 1000000"});
 }
 
-const std::string rod_of =
-    "gravity = [0, -9.81, 0]\n" + dlo::test::steel_rod + dlo::test::level_clamp;
+const std::string rod_of = "gravity = [0, -9.81, 0]\n" + steel_rod + level_clamp;
 
 TEST_F(Command, ContradictoryGripsNameFileLineAndKeyWithEveryModel) {
   const auto with_pin = [&](const std::string& at, const std::string& x) {
@@ -77,7 +72,7 @@ TEST_F(Command, NumbersThatOverflowInSquaresNameFileLineAndKey) {
 
 TEST_F(Command, MessagesShortenValuesOfAMegabyte) {
   const std::string text(1'000'000, 'x');
-  const Outcome outcome = run("solve " + scene("[rod]\nlength = \"" + text + "\"\n"));
+  const RunResult outcome = run("solve " + scene("[rod]\nlength = \"" + text + "\"\n"));
   EXPECT_EQ(outcome.status, 2);
   EXPECT_LT(outcome.err.size(), 2000U);
   EXPECT_TRUE(
@@ -99,3 +94,4 @@ TEST_F(Command, AModelThatDoesNotTakeASceneSaysWhichDoes) {
 }
 
 }  // namespace
+}  // namespace dlo::compare

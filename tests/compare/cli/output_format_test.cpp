@@ -20,19 +20,11 @@
 #include "output_fixture.hpp"
 #include "scene_text.hpp"
 
+namespace dlo::compare {
 namespace {
 
-using dlo::test::Output;
-
-using dlo::test::has_all;
-using dlo::test::has_none;
-
-using dlo::compare::display;
-using dlo::compare::valid_utf8;
-using dlo::test::Outcome;
-
 const std::string held_at_both_ends =
-    "name = \"both ends\"\n" + dlo::test::steel_rod + dlo::test::level_clamp +
+    "name = \"both ends\"\n" + steel_rod + level_clamp +
     "[[gripper]]\nat = \"50 cm\"\nposition = [0.45, 0, 0]\ndirection = \"0 deg\"\n";
 
 /// Returns the first word of an output that is NaN, infinite or -0, or that only a programmer of
@@ -88,11 +80,11 @@ TEST_F(Output, NoNumberIsNanOrInfinity) {
         "stability --map cF-cc --columns 2 --rows 4 --map-steps 50",
         "sweep both.toml --model compare-chain --vary gamma=0,1",
         "regress both.toml cable.toml --baseline base.toml", "materials"}) {
-    const Outcome csv = bash("$dlo " + command + " --format csv");
-    const std::vector<dlo::test::CsvRow> rows = dlo::test::csv_rows(csv.out);
+    const RunResult csv = bash("$dlo " + command + " --format csv");
+    const std::vector<test::CsvRow> rows = csv_rows(csv.out);
     ASSERT_GT(rows.size(), 1U) << command << csv.err;
     EXPECT_GT(rows.front().size(), 3U) << command << csv.err;
-    for (const dlo::test::CsvRow& row : rows) {
+    for (const test::CsvRow& row : rows) {
       EXPECT_EQ(row.size(), rows.front().size()) << command << "\n" << csv.out;
       for (const std::string& field : row) {
         EXPECT_FALSE(std::regex_match(field, not_a_number)) << command << "\n" << csv.out;
@@ -102,22 +94,22 @@ TEST_F(Output, NoNumberIsNanOrInfinity) {
     // All commands share one writer of JSON and one of text, so the two commands with the most
     // undefined values suffice.
     if (command != "compare both.toml" && command != "stability --case pulled") continue;
-    const Outcome json = bash("$dlo " + command + " --format json");
-    EXPECT_FALSE(nlohmann::json::parse(json.out, nullptr, false).is_discarded()) << command;
+    const RunResult json = bash("$dlo " + command + " --format json");
+    EXPECT_FALSE(json::parse(json.out, nullptr, false).is_discarded()) << command;
     EXPECT_EQ(first_invalid_word(json.out), "") << command << "\n" << json.out;
-    const Outcome text = bash("$dlo " + command);
+    const RunResult text = bash("$dlo " + command);
     EXPECT_EQ(first_invalid_word(text.out + text.err), "") << command << "\n" << text.out;
   }
   EXPECT_GT(empty, 10);  // otherwise the loop has tested nothing
   // The first commands of a new user, with any material: thin rods are soft, thick ones stiff.
   std::size_t index = 0;
-  for (const dlo::compare::Material& material : dlo::compare::materials()) {
+  for (const Material& material : materials()) {
     for (const std::string diameter : {"25mm", "6mm", "3mm"}) {
       const std::string made = " --force --material " + material.name + " --diameter " + diameter;
       succeeds("init " + path("s.toml") + made);
       succeeds("solve " + path("s.toml") + " --samples 9 -o " + path("f.csv"));
       for (const std::string& command : commands_for_new_scene(path(""), index++)) {
-        const Outcome result = run(command);
+        const RunResult result = run(command);
         EXPECT_EQ(first_invalid_word(result.out + result.err), "") << command << made << "\n"
                                                                    << result.out << result.err;
       }
@@ -138,17 +130,15 @@ TEST(WrongWord, IsAnUndefinedNumberOrASignedZero) {
 
 // Numbers of texts and tables go through formatted() and append().
 TEST(Formatted, PrintsNoMinusZero) {
-  using dlo::compare::formatted;
   EXPECT_EQ(formatted("{:.3f}|{:8.2f}|{:+.2g}|{}|{:.1e}", -4e-4, -1e-9, -0.0, -0.0, -0.0),
             "0.000|    0.00|+0|0|0.0e+00");
   EXPECT_EQ(formatted("{:.3f} {:g} {:{}.{}f} {}", -6e-4, -1e-30, -0.04, 5, 1, "-0"),
             "-0.001 -1e-30   0.0 -0");
-  EXPECT_EQ(dlo::compare::csv_number(-0.0), "0");
-  EXPECT_EQ(dlo::cli::json_text({{"x", -0.0}}), "{\n  \"x\": 0.0\n}\n");
+  EXPECT_EQ(csv_number(-0.0), "0");
+  EXPECT_EQ(cli::json_text({{"x", -0.0}}), "{\n  \"x\": 0.0\n}\n");
 }
 
 TEST(Shown, IsZeroBelowTheErrorOfTheData) {
-  using dlo::compare::shown;
   for (const double rounding : {-7.965e-33, 4.8e-18, -0.0, 1e-9}) {
     EXPECT_EQ(shown(rounding, 1), 0);
     EXPECT_FALSE(std::signbit(shown(rounding, 1)));
@@ -159,27 +149,26 @@ TEST(Shown, IsZeroBelowTheErrorOfTheData) {
   EXPECT_TRUE(std::isnan(shown(NAN, 1)));
   EXPECT_EQ(shown(INFINITY, 1), INFINITY);
   // A taut rod's forces are large compared with its weight.
-  EXPECT_EQ(dlo::cli::shown(Eigen::Vector3d(1e4, -1e-6, 1), 1), Eigen::Vector3d(1e4, 0, 1));
+  EXPECT_EQ(cli::shown(Eigen::Vector3d(1e4, -1e-6, 1), 1), Eigen::Vector3d(1e4, 0, 1));
 }
 
 // A search without remaining time lists the shapes whose stability is not known.
 TEST(EquilibriaText, OfAShapeThatIsNotJudgedHasNoEigenvalue) {
-  dlo::compare::AllSolutions all;
+  AllSolutions all;
   all.solutions.resize(2);
   const double nan = std::nan("");
-  for (dlo::compare::Solution& solution : all.solutions) {
-    solution.status = dlo::energy_model::SolveStatus::not_verified;
+  for (Solution& solution : all.solutions) {
+    solution.status = energy_model::SolveStatus::not_verified;
     solution.shape = {{0, 1}, Eigen::Matrix3Xd::Zero(3, 2)};
   }
   all.solutions[0].smallest_eigenvalue = nan;
   all.solutions[1].smallest_eigenvalue = -2.5;
-  const dlo::compare::Scene scene =
-      dlo::compare::load_scene(std::string(DLO_DATA) + "/scenes/spring_steel_175.toml");
-  const std::string text = dlo::cli::equilibria_text(all, scene);
+  const Scene scene = load_scene(std::string(DLO_DATA) + "/scenes/spring_steel_175.toml");
+  const std::string text = cli::equilibria_text(all, scene);
   EXPECT_TRUE(has_all(text, {"1           0  -       not_verified                    -  [",
                              "2           0  no      not_verified                 -2.5  ["}));
   EXPECT_EQ(first_invalid_word(text), "");
-  const dlo::cli::Json document = dlo::cli::equilibria_json(all, scene, {});
+  const cli::Json document = cli::equilibria_json(all, scene, {});
   EXPECT_TRUE(document.at("equilibria")[0].at("stable").is_null());
   EXPECT_EQ(document.at("equilibria")[1].at("stable"), false);
 }
@@ -207,7 +196,6 @@ TEST_F(Output, TextHasNoNumberThatIsRounding) {
 }
 
 TEST(Csv, UndefinedNumbersAreEmpty) {
-  using dlo::compare::csv_number;
   EXPECT_EQ(csv_number(NAN) + csv_number(INFINITY) + csv_number(-INFINITY), "");
   EXPECT_EQ(csv_number(-0.0), "0");
   EXPECT_EQ(csv_number(1. / 3), "0.3333333333");
@@ -240,9 +228,9 @@ TEST_F(Output, NamesThatAreNoTextBreakNoFormat) {
   for (const std::string& command :
        {"solve " + scene, "check " + scene + " --shape " + quoted(name),
         "calibrate " + scene + " --shape " + quoted(name), "compare " + scene}) {
-    const Outcome json = bash("$dlo " + command + " --format json");
+    const RunResult json = bash("$dlo " + command + " --format json");
     EXPECT_EQ(json.status, 0) << json.err;
-    EXPECT_FALSE(nlohmann::json::parse(json.out, nullptr, false).is_discarded()) << command;
+    EXPECT_FALSE(json::parse(json.out, nullptr, false).is_discarded()) << command;
     const std::string text = bash("$dlo " + command).out;
     EXPECT_EQ(text.find_first_of("\x1b\xff"), std::string::npos) << text;
     EXPECT_TRUE(has_all(text, {"w\xef\xbf\xbd?[31mire"}));
@@ -260,7 +248,7 @@ TEST_F(Output, TextHoldsNoControlCharactersOfNames) {
         "regress evil.toml --baseline b.toml",
         "stability evil.toml --map cF-cc --columns 1 --rows 4 --map-steps 50",
         "bench evil.toml --seconds 0.1"}) {
-    const Outcome result = bash("$dlo " + command);
+    const RunResult result = bash("$dlo " + command);
     EXPECT_EQ(result.status, 0) << command << result.err;
     for (const std::string& text : {result.out, result.err}) {
       EXPECT_EQ(display(std::regex_replace(text, std::regex("\n"), " ")),
@@ -273,3 +261,4 @@ TEST_F(Output, TextHoldsNoControlCharactersOfNames) {
 }
 
 }  // namespace
+}  // namespace dlo::compare

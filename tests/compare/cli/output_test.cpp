@@ -16,16 +16,10 @@
 #include "base/temporary_path.hpp"
 #include "output_fixture.hpp"
 
+namespace dlo::compare {
 namespace {
 
-using dlo::test::Output;
-
-using dlo::test::has_all;
-
 namespace fs = std::filesystem;
-
-using dlo::compare::OutputFile;
-using dlo::test::Outcome;
 
 TEST_F(Output, ThatIsLostOnStandardOutputIsAnError) {
   for (const std::string arguments :
@@ -34,7 +28,7 @@ TEST_F(Output, ThatIsLostOnStandardOutputIsAnError) {
         "init mine.toml --force"}) {
     write_scene("cable.toml");
     for (const std::string lost : {">/dev/full", ">&-"}) {
-      const Outcome result = bash(words({"$dlo", arguments, lost}));
+      const RunResult result = bash(words({"$dlo", arguments, lost}));
       EXPECT_EQ(result.status, 5) << arguments << lost;
       EXPECT_TRUE(one_line(result.err)) << arguments << lost << "\n" << result.err;
       EXPECT_TRUE(has_all(result.err, {"standard output: cannot be written"}));
@@ -44,7 +38,7 @@ TEST_F(Output, ThatIsLostOnStandardOutputIsAnError) {
   EXPECT_EQ(read(path("shape.csv")).substr(0, 8), "x,y,z,s\n");
   EXPECT_EQ(bash("$dlo solve cable.toml -o /dev/full").status, 5);
   // SIGXFSZ would end the process by a signal; the file keeps its content.
-  const Outcome limited = bash("ulimit -f 1; $dlo solve cable.toml --samples 9999 -o shape.csv");
+  const RunResult limited = bash("ulimit -f 1; $dlo solve cable.toml --samples 9999 -o shape.csv");
   EXPECT_EQ(limited.status, 5);
   EXPECT_TRUE(has_all(limited.err, {"shape.csv: cannot be written (File too large)"}));
   EXPECT_EQ(read(path("shape.csv")).substr(0, 8), "x,y,z,s\n");
@@ -57,7 +51,7 @@ TEST_F(Output, StandardErrorThatIsGoneFailsNothing) {
   const std::string expected = bash(solve).out;
   EXPECT_EQ(expected.substr(0, 8), "x,y,z,s\n");
   for (const std::string gone : {"2>&-", "2>/dev/full"}) {
-    const Outcome result = bash(words({solve, gone}));
+    const RunResult result = bash(words({solve, gone}));
     EXPECT_EQ(result.status, 0) << gone;
     EXPECT_EQ(result.out, expected) << gone;
     EXPECT_EQ(bash("$dlo solve nothing.toml " + gone).status, 2) << gone;
@@ -70,7 +64,7 @@ TEST_F(Output, StandardErrorThatIsGoneFailsNothing) {
 TEST_F(Output, ABrokenPipeIsSilent) {
   const std::string many = "$dlo solve " + steel() + " --samples 50000 --format csv";
   for (const std::string before : {"", "trap '' PIPE; "}) {
-    const Outcome result = bash(before + many + " | head -n 1; echo ${PIPESTATUS[0]}");
+    const RunResult result = bash(before + many + " | head -n 1; echo ${PIPESTATUS[0]}");
     EXPECT_EQ(result.out, "x,y,z,s\n141\n") << before;
     EXPECT_EQ(result.err, "") << before;
   }
@@ -165,7 +159,7 @@ TEST_F(Output, AnInputIsNeverWrittenOver) {
   expect_refused(words({"regress", scene, "--baseline", path("base.toml"), "--junit", path("twice"),
                         "-o", path("twice")}),
                  {"twice", "written twice"});
-  const Outcome appended = bash("$dlo solve scene.toml >>scene.toml");
+  const RunResult appended = bash("$dlo solve scene.toml >>scene.toml");
   EXPECT_EQ(appended.status, 2);
   EXPECT_TRUE(has_all(appended.err, {"standard output"}));
   EXPECT_EQ(read(scene), text);
@@ -232,7 +226,7 @@ TEST_F(Output, ASignalLeavesTheTargetAsItWas) {
   write("a.csv", "old");
   const pid_t child = ::fork();
   if (child == 0) {
-    dlo::compare::end_groups_at_signals();
+    end_groups_at_signals();
     OutputFile file(path("a.csv"));
     file.append("half");
     (void)std::raise(SIGTERM);
@@ -248,13 +242,13 @@ TEST_F(Output, ASignalLeavesTheTargetAsItWas) {
 }
 
 TEST_F(Output, OutOfMemoryIsALineAndAStatus) {
-  if (dlo::test::sanitized) GTEST_SKIP() << "a sanitizer needs all address space";
+  if (sanitized) GTEST_SKIP() << "a sanitizer needs all address space";
   for (const std::string& arguments :
        {"solve " + steel() + " --samples 1000000 --format json",
         "solve " + steel() + " --model chain --points 1000000",
         "sweep " + steel() +
             " --vary force_model.points=1000000,999999 --model chain --threads 2"}) {
-    const Outcome result = bash("ulimit -v 150000; $dlo " + arguments + " >/dev/null");
+    const RunResult result = bash("ulimit -v 150000; $dlo " + arguments + " >/dev/null");
     EXPECT_EQ(result.status, 4) << arguments << result.err;
     EXPECT_EQ(result.err, "dlo: out of memory\n") << arguments;
   }
@@ -267,7 +261,7 @@ TEST_F(Output, OutOfThreadsIsALineAndAStatus) {
   if (bash(limited + "solve " + steel() + " >/dev/null").status != 0) {
     GTEST_SKIP() << "threads cannot be limited, or others may not read here";
   }
-  const Outcome result =
+  const RunResult result =
       bash(limited + "sweep " + steel() + " --vary gamma=1,2,3 --threads 3 >/dev/null");
   EXPECT_EQ(result.status, 4) << result.err;
   EXPECT_EQ(result.err,
@@ -275,3 +269,4 @@ TEST_F(Output, OutOfThreadsIsALineAndAStatus) {
 }
 
 }  // namespace
+}  // namespace dlo::compare

@@ -8,7 +8,7 @@
 namespace dlo {
 namespace {
 
-using test::Outcome;
+using test::RunResult;
 using testing::HasSubstr;
 using testing::StartsWith;
 
@@ -17,8 +17,8 @@ class PlotCommand : public test::Command {
   /// Runs with --plot into an SVG, PNG or PDF, and checks the picture, and that exit status and
   /// standard output are the same as without it.
   void expect_picture(const std::string& arguments, const std::string& file) const {
-    const Outcome plain = run(arguments);
-    const Outcome drawn = run(arguments + " --plot " + path(file));
+    const RunResult plain = run(arguments);
+    const RunResult drawn = run(arguments + " --plot " + path(file));
     EXPECT_EQ(drawn.status, plain.status) << drawn.err;
     EXPECT_EQ(drawn.out, plain.out) << arguments;
     expect_drawn(file);
@@ -95,7 +95,7 @@ TEST_F(PlotCommand, CheckDrawsAndKeepsItsVerdict) {
   const std::string mine = solved_file(steel() + " --model chain --law hooke");
   const std::string check = "check " + steel() + " --no-modulus --shape " + mine + " --format csv";
   expect_picture(check, "a.svg");
-  const Outcome failed =
+  const RunResult failed =
       run(check + " --no-explanation --tolerance 0.0001% --plot " + path("b.png"));
   EXPECT_EQ(failed.status, 1);
   expect_drawn("b.png");
@@ -135,8 +135,8 @@ TEST_F(PlotCommand, RefusesBeforeItComputes) {
 }
 
 TEST_F(PlotCommand, WithoutGnuplotSaysWhatIsMissingAndWritesNothing) {
-  const Outcome result = run_line("PATH=/nowhere " + std::string(DLO_COMMAND) + " solve " +
-                                  steel() + " --plot " + path("a.svg"));
+  const RunResult result = run_line("PATH=/nowhere " + std::string(DLO_COMMAND) + " solve " +
+                                    steel() + " --plot " + path("a.svg"));
   EXPECT_EQ(result.status, 2);
   EXPECT_EQ(result.out, "");
   EXPECT_THAT(result.err, HasSubstr("needs the program gnuplot"));

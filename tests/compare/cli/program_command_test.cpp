@@ -10,13 +10,12 @@
 
 #include "command_fixture.hpp"
 
+namespace dlo::compare {
 namespace {
 
-using dlo::test::Outcome;
-using nlohmann::json;
 using testing::HasSubstr;
 
-class ProgramCommand : public dlo::test::Command {
+class ProgramCommand : public Command {
  protected:
   static std::string cable() { return std::string(DLO_DATA) + "/scenes/cable.toml"; }
   /// Returns the option --with that runs the example, a chain of hinges, under this name.
@@ -31,7 +30,7 @@ class ProgramCommand : public dlo::test::Command {
 };
 
 TEST_F(ProgramCommand, BenchPutsAProgramBesideOurModels) {
-  const Outcome result =
+  const RunResult result =
       run("bench --seconds 30 --repeats 1 --format json " + cable() + hinges("hinges") +
           "--with no='sh -c \"echo why >&2; exit 7\" {shape}'");
   ASSERT_EQ(result.status, 3) << result.err;
@@ -75,7 +74,7 @@ TEST_F(ProgramCommand, RegressKeepsAProgramsErrorByItsName) {
   expect_output(arguments + hinges("mine"), 0, {"same                 cable (mine, N = 16)\n"});
   expect_output(arguments + hinges("mine") + "--points 24", 1,
                 {"changed              cable (mine, N = 24)\n"});
-  const Outcome failed = run(arguments + " --with mine='sh -c \"echo no >&2; exit 1\" {shape}'");
+  const RunResult failed = run(arguments + " --with mine='sh -c \"echo no >&2; exit 1\" {shape}'");
   EXPECT_EQ(failed.status, 3);
   EXPECT_THAT(failed.out, HasSubstr("exit status 1: no"));
 }
@@ -95,3 +94,4 @@ TEST_F(ProgramCommand, ASignalKillsTheProgram) {
 }
 
 }  // namespace
+}  // namespace dlo::compare

@@ -11,12 +11,10 @@
 #include "dlo/compare/deviation.hpp"
 #include "scene_text.hpp"
 
+namespace dlo::compare {
 namespace {
 
-using dlo::test::has_all;
-using dlo::test::has_none;
-
-class RegressCommand : public dlo::test::Command {
+class RegressCommand : public Command {
  protected:
   void SetUp() override {
     Command::SetUp();
@@ -87,8 +85,7 @@ TEST_F(RegressCommand, AProgramThatIsNotGivenIsAskedFor) {
 TEST_F(RegressCommand, AnEndThatIsAppendedToAProgramsPointsIsStatedHereAndByBench) {
   write("starts.sh",
         "for i in 0 0625 125 1875 25 3125 375 4375; do echo \"0.$i,0,0\"; done >\"$1\"\n");
-  const std::string file =
-      scene("gravity = [0, -9.81, 0]\n" + dlo::test::steel_rod + dlo::test::level_clamp);
+  const std::string file = scene("gravity = [0, -9.81, 0]\n" + steel_rod + level_clamp);
   const std::string with = file + " --with \"mine=sh " + path("starts.sh") + " {shape}\"";
   const std::string note = "8 points are the start points of the segments; the end of the last";
   expect_output(arguments_ + with, 1, {"not in the baseline (--update adds it); its " + note});
@@ -108,7 +105,7 @@ TEST_F(RegressCommand, UpdateSaysWhatItDid) {
 
 TEST_F(RegressCommand, AWorseErrorFailsAndABetterOneIsReported) {
   set("rms_over_length", "0.2");
-  dlo::test::Outcome result = run(arguments_ + steel());
+  RunResult result = run(arguments_ + steel());
   EXPECT_EQ(result.status, 1);
   EXPECT_TRUE(has_all(result.out, {"(baseline 20 %) worse"}));
   succeeds(arguments_ + steel() + " --relative 0.1");
@@ -124,7 +121,7 @@ TEST_F(RegressCommand, AMissingBaselineOrCaseOnEitherSideFails) {
       "regress --baseline " + path("none.toml") + " " + steel(), 2,
       {"none.toml: cannot be read (No such file or directory); --update writes a first baseline"});
   expect_output(arguments_ + steel() + " " + other, 1, {"1 not in the baseline"});
-  const dlo::test::Outcome changed = run(arguments_ + steel() + " --points 20");
+  const RunResult changed = run(arguments_ + steel() + " --points 20");
   EXPECT_EQ(changed.status, 1);
   EXPECT_TRUE(has_all(changed.out, {"N = 20 (baseline N = 16): RMS", "\n1 changed\n"}));
 }
@@ -133,7 +130,7 @@ TEST_F(RegressCommand, AnotherSceneOfTheSameNameIsChanged) {
   std::string text = read(steel());
   ASSERT_TRUE(has_all(text, {"\n[rod]"}));
   text.replace(text.find("\n[rod]"), 6, "\n[[load]]\nat = 0.5\nforce = [0, 1e-9, 0]\n[rod]");
-  const dlo::test::Outcome result = run(arguments_ + scene(text));
+  const RunResult result = run(arguments_ + scene(text));
   EXPECT_EQ(result.status, 1) << result.err;
   EXPECT_EQ(result.out.substr(0, 8), "changed ") << result.out;
   EXPECT_TRUE(has_all(result.out, {"another than the baseline's: RMS"}));
@@ -185,8 +182,8 @@ TEST_F(RegressCommand, BadInputIsOneLineAndStatusTwo) {
 
 TEST_F(RegressCommand, WritesJunitThatAnXmlReaderTakes) {
   set("tip_over_length", "0.1");
-  const std::string strange = scene("name = \"<&>'\\\" \\u0001 caf\\u00e9\"\n" +
-                                    dlo::test::steel_rod + dlo::test::level_clamp);
+  const std::string strange =
+      scene("name = \"<&>'\\\" \\u0001 caf\\u00e9\"\n" + steel_rod + level_clamp);
   EXPECT_EQ(run(arguments_ + steel() + " " + strange + " --junit " + path("j.xml")).status, 1);
   EXPECT_EQ(junit("string(/testsuites/testsuite/@tests)"), "2\n");
   EXPECT_EQ(junit("string(/testsuites/testsuite/@failures)"), "2\n");
@@ -197,3 +194,4 @@ TEST_F(RegressCommand, WritesJunitThatAnXmlReaderTakes) {
 }
 
 }  // namespace
+}  // namespace dlo::compare

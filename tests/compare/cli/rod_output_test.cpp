@@ -10,13 +10,10 @@
 #include "dlo/compare/scene_file.hpp"
 #include "scene_text.hpp"
 
+namespace dlo::compare {
 namespace {
 
-using dlo::test::has_all;
-using dlo::test::Outcome;
-using nlohmann::json;
-
-class RodCommand : public dlo::test::Command {
+class RodCommand : public Command {
  protected:
   static std::string hose() { return std::string(DLO_DATA) + "/scenes/spring_hose.toml"; }
 
@@ -24,7 +21,7 @@ class RodCommand : public dlo::test::Command {
   std::string by_stiffness(const std::string& EI) {
     return write("rod.toml",
                  "[rod]\nlength = 1\nmass_per_length = \"45 g/m\"\nbending_stiffness = " + EI +
-                     "\n" + dlo::test::gripper_text("direction = \"20 deg\""));
+                     "\n" + gripper_text("direction = \"20 deg\""));
   }
 };
 
@@ -41,12 +38,11 @@ TEST_F(RodCommand, SolveSaysThatTheTorsionalStiffnessIsAssumed) {
 
 TEST_F(RodCommand, SolveShowsARodThatIsAboutToBuckleAndItsNeutralDirections) {
   constexpr double self_buckling = 7.837347;
-  const std::string file =
-      scene(fmt::format("gravity = [0, -9.81, 0]\n[rod]\nlength = 1\nmass_per_length = 0.045\n"
-                        "bending_stiffness = {}\n{}",
-                        0.045 * 9.81 / (self_buckling * (1 - 1e-9)),
-                        dlo::test::gripper_text("direction = [0, 1, 0]")));
-  const Outcome text = run("solve " + file);
+  const std::string file = scene(fmt::format(
+      "gravity = [0, -9.81, 0]\n[rod]\nlength = 1\nmass_per_length = 0.045\n"
+      "bending_stiffness = {}\n{}",
+      0.045 * 9.81 / (self_buckling * (1 - 1e-9)), gripper_text("direction = [0, 1, 0]")));
+  const RunResult text = run("solve " + file);
   EXPECT_EQ(text.status, 3);
   const std::string why = "next to a fold or bifurcation: 2 neutral directions";
   EXPECT_TRUE(has_all(text.err, {why}));
@@ -77,17 +73,16 @@ TEST_F(RodCommand, CalibrateFindsTheStiffnessThatIsGiven) {
   EXPECT_EQ(run(calibrate + " --format csv").out.rfind("bending_stiffness_Nm2,low_Nm2,", 0), 0U);
   succeeds(calibrate + " -o " + path("fit.toml"));
   // The written lines are keys of the table [rod] of a scene.
-  const dlo::compare::Scene fitted =
-      dlo::compare::parse_scene("[rod]\nlength = 1\n" + read(path("fit.toml")) +
-                                    "[[gripper]]\nat = 0\nposition = [0, 0, 0]\ndirection = 0\n",
-                                "fitted.toml");
+  const Scene fitted = parse_scene("[rod]\nlength = 1\n" + read(path("fit.toml")) +
+                                       "[[gripper]]\nat = 0\nposition = [0, 0, 0]\ndirection = 0\n",
+                                   "fitted.toml");
   EXPECT_NEAR(fitted.bending_stiffness(), 0.08, 1e-6);
   EXPECT_DOUBLE_EQ(fitted.mass_per_length(), 0.045);
 }
 
 TEST_F(RodCommand, AModelWithoutNaturalCurvatureSaysSoAndWhatItCosts) {
   const std::string paper = hose() + " --law paper";
-  const Outcome chain = run("solve --model chain " + paper);
+  const RunResult chain = run("solve --model chain " + paper);
   EXPECT_TRUE(has_all(chain.out, {"\nneglected ", " natural curvature\n"}));
   EXPECT_TRUE(has_all(run("compare --no-modulus --format csv " + paper).err,
                       {"intrinsically curved, which models chain and force neglect with the law"}));
@@ -106,3 +101,4 @@ TEST_F(RodCommand, AModelWithoutNaturalCurvatureSaysSoAndWhatItCosts) {
 }
 
 }  // namespace
+}  // namespace dlo::compare

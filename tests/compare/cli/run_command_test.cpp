@@ -17,11 +17,10 @@
 #include "option/output.hpp"
 #include "scene_text.hpp"
 
+namespace dlo::compare {
 namespace {
 
-using dlo::cli::RedirectedOutput;
-using dlo::test::Command;
-using dlo::test::Outcome;
+using cli::RedirectedOutput;
 
 class RunCommand : public Command {};
 
@@ -41,11 +40,11 @@ TEST_F(RunCommand, IsTheProcess) {
                {"--version", 0},
                {"", 0}};
   for (const auto& one : cases) {
-    const Outcome process = run_process(one.arguments);
+    const RunResult process = run_process(one.arguments);
     EXPECT_EQ(process.status, one.status) << one.arguments << process.err;
     EXPECT_NE(process.out + process.err, "") << one.arguments;
     for (const char* call : {"first", "second"}) {
-      const Outcome here = run(one.arguments);
+      const RunResult here = run(one.arguments);
       EXPECT_EQ(here.status, process.status) << one.arguments << ", " << call;
       EXPECT_EQ(here.out, process.out) << one.arguments << ", " << call;
       EXPECT_EQ(here.err, process.err) << one.arguments << ", " << call;
@@ -59,23 +58,22 @@ TEST_F(RunCommand, TheTimeLimitHoldsForTheWholeCommand) {
   const std::string helix = scene(
       "[rod]\nlength = 30\ndiameter = 0.001\nmaterial = \"copper\"\n"
       "helix = { radius = \"2 cm\", pitch = \"2 cm\" }\n" +
-      dlo::test::level_clamp);
-  const Outcome turns = run_line(limits + "solve " + helix + " --model exact --time-limit 1");
+      level_clamp);
+  const RunResult turns = run_line(limits + "solve " + helix + " --model exact --time-limit 1");
   EXPECT_EQ(turns.status, 3) << turns.err;
-  EXPECT_TRUE(dlo::test::has_all(turns.err, {"--time-limit 1"}));
-  std::string text = dlo::test::steel_rod + dlo::test::level_clamp;
+  EXPECT_TRUE(has_all(turns.err, {"--time-limit 1"}));
+  std::string text = steel_rod + level_clamp;
   for (int i = 0; i < 90; ++i) {
     text += fmt::format("[[section]]\nfrom = {}\nto = {}\nbending_stiffness = {}\n", i / 200.0,
                         (i + 1) / 200.0, 0.1 + 0.05 * (i % 7));
   }
-  const Outcome sections = run_line(limits + "solve " + scene(text) + " --all --time-limit 0.5");
+  const RunResult sections = run_line(limits + "solve " + scene(text) + " --all --time-limit 0.5");
   // The search ends early, or the command does; a killed process has another status.
   EXPECT_TRUE(sections.status == 0 || sections.status == 3) << sections.status << sections.err;
 }
 
 TEST_F(RunCommand, WithoutTextsThrowsWhatItIsRefusedWith) {
-  EXPECT_THROW((void)dlo::cli::run_command({"solve", path("nothing.toml")}),
-               dlo::compare::InputError);
+  EXPECT_THROW((void)cli::run_command({"solve", path("nothing.toml")}), InputError);
 }
 
 TEST_F(RunCommand, ABrokenPipeIsAStatusAndEndsNoProcess) {
@@ -84,10 +82,10 @@ TEST_F(RunCommand, ABrokenPipeIsAStatusAndEndsNoProcess) {
   const std::string solve = "solve " + steel() + " --samples 10000 --format csv -o " + path("pipe");
   std::thread reader([file = path("pipe")] { (void)std::ifstream(file).get(); });
   auto* const before = std::signal(SIGPIPE, SIG_IGN);
-  const Outcome result = run(solve);
+  const RunResult result = run(solve);
   (void)std::signal(SIGPIPE, before);
   reader.join();
-  EXPECT_EQ(result.status, dlo::cli::broken_pipe_status) << result.err;
+  EXPECT_EQ(result.status, cli::broken_pipe_status) << result.err;
   EXPECT_EQ(result.out + result.err, "");
 }
 
@@ -99,12 +97,12 @@ TEST(RedirectedOutputTest, HoldsForAllThreadsUntilItsEnd) {
     const RedirectedOutput redirected(out, err);
     {
       const RedirectedOutput within(inner, inner);
-      dlo::cli::write_standard_output("inner");
+      cli::write_standard_output("inner");
     }
-    dlo::cli::write_standard_output("outer");
+    cli::write_standard_output("outer");
     constexpr int lines = 1000;
     const auto print_message = [] {
-      for (int i = 0; i < lines; ++i) dlo::cli::print_message("a line");
+      for (int i = 0; i < lines; ++i) cli::print_message("a line");
     };
     std::thread other(print_message);
     print_message();
@@ -116,3 +114,4 @@ TEST(RedirectedOutputTest, HoldsForAllThreadsUntilItsEnd) {
 }
 
 }  // namespace
+}  // namespace dlo::compare

@@ -61,11 +61,11 @@ TEST_F(SameVerdict, OfFiftyShapesFromCommandLibraryAndMatchers) {
       const std::string written = write_shape(shape);
       for (const bool largest : {false, true}) {
         SCOPED_TRACE(std::string(name) + ", kind " + std::to_string(kind));
-        const Outcome outcome = run("check " + file + " --shape " + written +
-                                    " --no-modulus --format json --tolerance 1% --measure " +
-                                    (largest ? "max" : "rms"));
+        const RunResult outcome = run("check " + file + " --shape " + written +
+                                      " --no-modulus --format json --tolerance 1% --measure " +
+                                      (largest ? "max" : "rms"));
         ASSERT_TRUE(outcome.status == 0 || outcome.status == 1) << outcome.err;
-        const nlohmann::json document = nlohmann::json::parse(outcome.out);
+        const json document = json::parse(outcome.out);
         const compare::CheckResult result =
             compare::check(scene, compare::load_shape(written),
                            {.tolerance = compare::ShapeTolerance{.allowed_m = 0.01 * scene.length,
@@ -88,7 +88,7 @@ TEST_F(SameVerdict, OfFiftyShapesFromCommandLibraryAndMatchers) {
 }
 
 /// Returns the document without the fields that depend on the tolerance.
-nlohmann::json without_tolerance_fields(nlohmann::json document) {
+json without_tolerance_fields(json document) {
   for (const char* key : {"tolerance", "judged_m", "verdict", "reason", "explanations",
                           "superseded_by", "significant", "deflection_m", "hint"}) {
     document.erase(key);
@@ -107,9 +107,9 @@ TEST_F(SameVerdict, HasTheSameNumbersWhateverIsAllowed) {
     const std::string check = "check " + file + " --shape " +
                               write_shape(shape_of_kind(scene, kind, random)) + " --format json";
     const auto document = [&](const std::string& options) {
-      return nlohmann::json::parse(run(check + options).out);
+      return json::parse(run(check + options).out);
     };
-    const nlohmann::json judged = document(" --tolerance 1%");
+    const json judged = document(" --tolerance 1%");
     EXPECT_EQ(document(" --tolerance 1% --no-explanation")["verdict"], judged["verdict"]);
     for (const char* options : {"", " --tolerance 1% --no-explanation", " --tolerance 0.01%",
                                 " --tolerance 20% --measure max"}) {

@@ -7,14 +7,11 @@
 #include "command_fixture.hpp"
 #include "scene_text.hpp"
 
+namespace dlo::compare {
 namespace {
 
-using dlo::test::Command;
-using dlo::test::Outcome;
-using nlohmann::json;
-
 const std::string short_rod =
-    "gravity = [0, -9.81, 0]\n" + dlo::test::steel_rod + dlo::test::level_clamp + R"([force_model]
+    "gravity = [0, -9.81, 0]\n" + steel_rod + level_clamp + R"([force_model]
 points = 8
 c_c = 660
 )";
@@ -86,7 +83,7 @@ gripper = [{ at = 0, position = [0, -0.02, 0], hold = "pin" },
 load = [{ at = 0.12, force = [-4e-3, 6e-3, 5e-3] }]
 )");
   for (const std::string limit : {"0.001", "0.01", "0.1", "0.3"}) {
-    const Outcome found =
+    const RunResult found =
         run("solve " + twisted + std::string(" --all --format json --time-limit ").append(limit));
     const bool converged = !found.out.empty() && json::parse(found.out).at("converged").get<bool>();
     EXPECT_EQ(found.status, converged ? 0 : 3) << limit << found.err;
@@ -94,3 +91,4 @@ load = [{ at = 0.12, force = [-4e-3, 6e-3, 5e-3] }]
 }
 
 }  // namespace
+}  // namespace dlo::compare

@@ -10,15 +10,10 @@
 #include "rope_beside_peg.hpp"
 #include "scene_text.hpp"
 
+namespace dlo::compare {
 namespace {
 
-using dlo::test::Command;
-using dlo::test::has_all;
-using dlo::test::Outcome;
-using nlohmann::json;
-
-const std::string back_bent_rod =
-    dlo::test::steel_rod + dlo::test::gripper_text("direction = \"-175 deg\"");
+const std::string back_bent_rod = steel_rod + gripper_text("direction = \"-175 deg\"");
 
 const std::string two_grippers = R"(gravity = [0, -9.81, 0]
 rod = { length = "50 cm", diameter = "2 mm", material = "spring_steel" }
@@ -31,7 +26,7 @@ force_model = { points = 40 }
 
 TEST_F(Command, SolveWritesTheContractsJsonForEveryModel) {
   for (const std::string model : {"energy", "chain", "exact", "force"}) {
-    const Outcome result =
+    const RunResult result =
         run("solve " + steel() + " --model " + model + " --samples 11 --format json");
     ASSERT_EQ(result.status, 0) << result.err;
     EXPECT_EQ(result.err, "");
@@ -94,7 +89,7 @@ TEST_F(Command, ModelExactIsTheDefaultAndTheReferenceOfARodThatStretches) {
   const std::string stretches = scene(
       "gravity = [0, -10, 0]\n[rod]\nlength = 2\ndiameter = 0.01\nstretch = true\n"
       "material = { youngs_modulus = \"2 MPa\", density = 1000 }\n" +
-      dlo::test::gripper_text("direction = \"-90 deg\""));
+      gripper_text("direction = \"-90 deg\""));
   const json document = json_of("solve " + stretches + " --samples 3");
   EXPECT_EQ(document.at("model"), "exact");
   EXPECT_NEAR(document.at("points_m")[2][1], -2.01, 1e-9);
@@ -110,7 +105,7 @@ TEST_F(Command, ModelExactIsTheDefaultAndTheReferenceOfARodThatStretches) {
 }
 
 TEST_F(Command, SolveNearAFileIsTheEquilibriumBesideThatFile) {
-  const std::string path = scene(dlo::test::rope_beside_peg);
+  const std::string path = scene(rope_beside_peg);
   const std::string over = write("over.csv",
                                  "x,y,z\n-0.35,0.06,0\n-0.01,0.043,0\n0.03,0.03,0\n0.043,0,0\n"
                                  "0.043,-0.3,0\n0.043,-0.59,0\n");
@@ -127,7 +122,7 @@ TEST_F(Command, SolveNearAFileIsTheEquilibriumBesideThatFile) {
 }
 
 TEST_F(Command, SolveReturnsAnEquilibriumByItsNumberInTheListOfAll) {
-  const std::string path = scene(dlo::test::rope_beside_peg);
+  const std::string path = scene(rope_beside_peg);
   const json all = json_of("solve " + path + " --all").at("equilibria");
   const json first = json_of("solve " + path + " --equilibrium 1");
   EXPECT_TRUE(first.at("contacts").empty());
@@ -149,7 +144,7 @@ TEST_F(Command, SolveReturnsAnEquilibriumByItsNumberInTheListOfAll) {
 }
 
 TEST_F(Command, SolveStatesTheStableEquilibriaThatItsSearchFound) {
-  const std::string path = scene(dlo::test::rope_beside_peg);
+  const std::string path = scene(rope_beside_peg);
   EXPECT_TRUE(has_all(run("solve " + path).out, {"\nstable energies ", "\npassing starts "}));
   const json lowest = json_of("solve " + path);
   EXPECT_EQ(lowest.at("passing_starts"), 2);
@@ -176,3 +171,4 @@ TEST_F(Command, SolveStatesTheStableEquilibriaThatItsSearchFound) {
 }
 
 }  // namespace
+}  // namespace dlo::compare

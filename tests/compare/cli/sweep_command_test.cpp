@@ -10,12 +10,10 @@
 
 #include "command_fixture.hpp"
 
+namespace dlo::compare {
 namespace {
 
-using dlo::test::csv_rows;
-using dlo::test::has_all;
-
-class SweepCommand : public dlo::test::Command {
+class SweepCommand : public Command {
  protected:
   /// Writes a sweep of 50 rows to whole.csv.
   void SetUp() override {
@@ -37,7 +35,7 @@ class SweepCommand : public dlo::test::Command {
 TEST_F(SweepCommand, WritesATableToStandardOutputOrAFile) {
   const std::string arguments =
       "sweep " + steel() + " --vary gamma=log:0.1:10:3 gripper.0.direction='0 deg,45 deg'";
-  const dlo::test::Outcome printed = run(arguments);
+  const RunResult printed = run(arguments);
   ASSERT_EQ(printed.status, 0) << printed.err;
   EXPECT_EQ(printed.err, "");
   EXPECT_EQ(printed.out.substr(0, 40), "row,gamma,gripper.0.direction [deg],tip_");
@@ -48,8 +46,7 @@ TEST_F(SweepCommand, WritesATableToStandardOutputOrAFile) {
 }
 
 TEST_F(SweepCommand, SaysHowManyScenesHaveNoResult) {
-  const dlo::test::Outcome result =
-      run("sweep " + steel() + " --vary rod.length=-1,1 -o " + path("a.csv"));
+  const RunResult result = run("sweep " + steel() + " --vary rod.length=-1,1 -o " + path("a.csv"));
   EXPECT_EQ(result.status, 0);
   EXPECT_TRUE(has_all(result.err, {"1 of 2 scenes"}));
 }
@@ -151,3 +148,4 @@ TEST_F(SweepCommand, CountsRowsWithoutResultAndSuggestsFields) {
 }
 
 }  // namespace
+}  // namespace dlo::compare

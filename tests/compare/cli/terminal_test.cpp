@@ -4,12 +4,8 @@
 
 #include "command_fixture.hpp"
 
+namespace dlo::compare {
 namespace {
-
-using dlo::test::Command;
-using dlo::test::has_all;
-using dlo::test::has_none;
-using dlo::test::Outcome;
 
 class Terminal : public Command {
  protected:
@@ -44,7 +40,7 @@ TEST_F(Terminal, ProgressIsShownAndErased) {
   const std::string rest = text.substr(text.rfind(erased) + 4);
   EXPECT_TRUE(has_none(rest, {"sweep"}));
   // The result is the same without a terminal, where there is no progress.
-  const Outcome quiet = run(grid + path("b.csv"));
+  const RunResult quiet = run(grid + path("b.csv"));
   EXPECT_EQ(quiet.err, "");
   EXPECT_EQ(read(path("a.csv")), read(path("b.csv")));
 }
@@ -77,3 +73,4 @@ TEST_F(Terminal, ColoursAreForTerminalsThatWantThem) {
 }
 
 }  // namespace
+}  // namespace dlo::compare

@@ -11,12 +11,8 @@
 
 #include "command_fixture.hpp"
 
+namespace dlo::compare {
 namespace {
-
-using dlo::test::Command;
-using dlo::test::has_all;
-using dlo::test::Outcome;
-using nlohmann::json;
 
 class TrackCommand : public Command {
  protected:
@@ -76,7 +72,7 @@ TEST_F(OutputsOverInputs, TheTrajectoryThatASceneNamesIsAnInput) {
                    "is read too");
   expect_untouched(track("m_00001.toml", "--paraview " + path("move.csv")), "move.csv",
                    "is read too");
-  const Outcome appended =
+  const RunResult appended =
       run_line("cd " + path("") + " && " + DLO_COMMAND + " track m_00001.toml >> soft.csv");
   EXPECT_EQ(appended.status, 2) << appended.err;
 }
@@ -109,7 +105,7 @@ TEST_F(TrackCommand, StopsAtTheImpossibleWithStatusThreeAndWhatWasBefore) {
       "[[gripper]]\nat = 0\nposition = [0, 0, 0]\nhold = \"pin\"\n"
       "[[gripper]]\nat = 1\nhold = \"pin\"\n"
       "pose = [{ time = 0, position = [0.9, 0, 0] }, { time = 1, position = [1.1, 0, 0] }]\n");
-  const Outcome result = run(words(
+  const RunResult result = run(words(
       {"track", file, "--frame-rate 20 --no-force --dynamic --damping 0.01", "--format json"}));
   EXPECT_EQ(result.status, 3);
   EXPECT_TRUE(has_all(result.err, {"stopped at 0.5 s"}));
@@ -154,7 +150,7 @@ TEST_F(TrackCommand, HasTheMovingRodInEveryFormat) {
   EXPECT_EQ(last.at("force_error_over_length"),
             dynamic.at("force_model").at("largest_error_over_length"));
   const std::string csv = run(track + " --every 10 --no-force --format csv").out;
-  EXPECT_TRUE(dlo::test::is_table(csv));
+  EXPECT_TRUE(is_table(csv));
 }
 
 TEST_F(TrackCommand, HasForcesOfObstaclesAtRestAndMoving) {
@@ -173,7 +169,7 @@ TEST_F(TrackCommand, HasForcesOfObstaclesAtRestAndMoving) {
   EXPECT_GT(document.at("dynamic").at("frames").back().at("energy_J").at("lost"), 0);
   const std::string csv = run(track + " --every 20 --format csv").out;
   EXPECT_TRUE(has_all(csv, {",obstacle_fx_1_N,", ",dynamic_obstacle_fz_1_N"}));
-  EXPECT_TRUE(dlo::test::is_table(csv));
+  EXPECT_TRUE(is_table(csv));
 }
 
 TEST_F(TrackCommand, WritesTheMovingRodForParaView) {
@@ -213,3 +209,4 @@ TEST_F(TrackCommand, SaysWhatAMovingRodCannotHave) {
 }
 
 }  // namespace
+}  // namespace dlo::compare

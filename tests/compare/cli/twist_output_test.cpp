@@ -9,16 +9,13 @@
 
 #include "command_fixture.hpp"
 
+namespace dlo::compare {
 namespace {
 
-using dlo::test::has_all;
-using dlo::test::has_none;
-using dlo::test::Outcome;
-using nlohmann::json;
 using std::numbers::pi;
 
 /// Fixture with the scene twisted_wire.toml of data/scenes.
-class TwistCommand : public dlo::test::Command {
+class TwistCommand : public Command {
  protected:
   static std::string wire() { return std::string(DLO_DATA) + "/scenes/twisted_wire.toml"; }
 };
@@ -26,7 +23,7 @@ class TwistCommand : public dlo::test::Command {
 TEST_F(TwistCommand, ModelsThatHaveNoTwistSaySo) {
   for (const std::string model : {"chain", "force"}) {
     const std::string solve = "solve " + wire() + " --law paper --model " + model;
-    const Outcome text = run(solve);
+    const RunResult text = run(solve);
     ASSERT_EQ(text.status, 0) << text.err;
     EXPECT_TRUE(has_all(text.out, {"\nneglected ", " twist\n"}));
     EXPECT_EQ(text.err, "");
@@ -34,7 +31,7 @@ TEST_F(TwistCommand, ModelsThatHaveNoTwistSaySo) {
     EXPECT_EQ(document.at("neglected"), json({"twist"}));
     EXPECT_FALSE(document.contains("twist"));
     EXPECT_FALSE(document.at("grippers")[0].contains("axial_torque_Nm"));
-    const Outcome csv = run(solve + " --format csv");
+    const RunResult csv = run(solve + " --format csv");
     EXPECT_TRUE(has_all(csv.err, {"model " + model + " neglects the twist"}));
   }
 }
@@ -102,3 +99,4 @@ TEST_F(TwistCommand, TheEnergyModelGivesTorqueAndEnergyOfTheTwist) {
 }
 
 }  // namespace
+}  // namespace dlo::compare

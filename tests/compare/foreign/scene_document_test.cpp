@@ -159,7 +159,7 @@ TEST_F(SceneCommand, WritesTheDocumentAndTheSameForPeople) {
   Scene scene = load_scene(twisted);
   scene.force_model.points = 8;
   EXPECT_EQ(document, ordered_json::parse(scene_document_text(scene)));
-  const dlo::test::Outcome text = run("scene " + twisted);
+  const dlo::test::RunResult text = run("scene " + twisted);
   EXPECT_TRUE(has_all(text.out, {"\n  torsional stiffness", " 0.00793 N m^2\n", "3.142"}));
   EXPECT_TRUE(has_none(text.out, {"null"}));
   expect_error("scene --format csv " + twisted, 2, {"--format", "csv"});

@@ -16,13 +16,8 @@
 #include "dlo/compare/solve.hpp"
 #include "scenes.hpp"
 
+namespace dlo::compare {
 namespace {
-
-using dlo::compare::BendingRule;
-using dlo::compare::equivalent_bending_stiffness;
-using dlo::compare::paper_bending_stiffness;
-using dlo::compare::paper_joint_angle;
-using dlo::compare::paper_joint_moment;
 
 TEST(EquivalentModulus, IsThePhysicalOneWhereTheRuleSaysSo) {
   const double EI = 0.165;
@@ -69,19 +64,18 @@ TEST(EquivalentModulus, PredictsTheBestFitOfACantileverUnderLittleWeight) {
   const double factor = 23023.0 / 32346;
   for (const int points : {16, 64}) {
     for (const double gamma : {1e-4, 1e-3}) {
-      dlo::compare::Scene scene = dlo::test::heavy_scene(gamma, 0);
-      scene.force_model.law = dlo::compare::BendingLaw::paper;
+      Scene scene = heavy_scene(gamma, 0);
+      scene.force_model.law = BendingLaw::paper;
       scene.force_model.points = points;
       scene.force_model.design_curvature = 2.5;
-      const dlo::compare::Solution chain = dlo::compare::solve(scene, dlo::compare::Model::chain);
+      const Solution chain = solve(scene, Model::chain);
       const double c_b = chain.parameters.c_b;
       const double L = chain.parameters.segment_length;
       const double moment = scene.weight_per_length().norm() / 2;
       const double predicted =
           factor * equivalent_bending_stiffness(c_b, L, paper_joint_angle(c_b, L, moment)) /
           scene.bending_stiffness();
-      const dlo::compare::EffectiveModulus fitted =
-          dlo::compare::fit_effective_modulus(scene, chain.shape);
+      const EffectiveModulus fitted = fit_effective_modulus(scene, chain.shape);
       // Slopes are not quite small (up to 0.2 rad), and 16 points are few.
       EXPECT_NEAR(fitted.ratio / predicted, 1, 0.02) << points << " " << gamma;
     }
@@ -89,3 +83,4 @@ TEST(EquivalentModulus, PredictsTheBestFitOfACantileverUnderLittleWeight) {
 }
 
 }  // namespace
+}  // namespace dlo::compare

@@ -14,17 +14,8 @@
 #include "record/solution_fields.hpp"
 #include "scenes.hpp"
 
+namespace dlo::compare {
 namespace {
-
-using dlo::compare::Document;
-using dlo::compare::Field;
-using dlo::compare::Json;
-using dlo::compare::Scene;
-using dlo::compare::Solution;
-using dlo::compare::SolvedShape;
-using dlo::test::Command;
-using dlo::test::has_all;
-using dlo::test::has_none;
 
 class Record : public Command {
  protected:
@@ -49,14 +40,12 @@ TEST_F(Record, ANumberOfAShapeStandsInEachCommandsOutput) {
   const std::string tracked = output_of(track + "--format csv");
   const Json frame = Json::parse(output_of(track + "--format json")).at("frames").at(0);
   int places = 0;
-  for (const Field<SolvedShape>& number : dlo::compare::shape_numbers()) {
+  for (const Field<SolvedShape>& number : shape_numbers()) {
     const double value = solved.at(number.key()).get<double>();
     EXPECT_TRUE(std::isfinite(value)) << number.key();
     EXPECT_NEAR(frame.at(number.key()), value, 1e-6) << number.key();
-    EXPECT_NEAR(std::stod(dlo::test::first_row_value(tracked, number.key())), value, 1e-6)
-        << number.key();
-    EXPECT_TRUE(std::isfinite(std::stod(dlo::test::first_row_value(swept, number.key()))))
-        << number.key();
+    EXPECT_NEAR(std::stod(first_row_value(tracked, number.key())), value, 1e-6) << number.key();
+    EXPECT_TRUE(std::isfinite(std::stod(first_row_value(swept, number.key())))) << number.key();
     ++places;
   }
   EXPECT_GE(places, 3);
@@ -83,21 +72,21 @@ const Field<SolvedShape> mean_tension[] = {
      }}};
 
 TEST_F(Record, OneDescriptionMakesRowKeyAndColumn) {
-  const Scene scene = dlo::test::heavy_scene(1, 0);
+  const Scene scene = heavy_scene(1, 0);
   Solution solution;
   solution.tension = {1, 2.5};
   const SolvedShape shape{scene, solution};
   const std::span<const Field<SolvedShape>> fields = mean_tension;
   Json document = {{"schema", "test"}};
-  dlo::compare::add_json(document, fields, shape, scene);
+  add_json(document, fields, shape, scene);
   EXPECT_EQ(document.dump(), R"({"schema":"test","mean_tension_N":1.75})");
   EXPECT_EQ(Document{document}.text(), "mean tension  1.75 N\n");
   EXPECT_EQ(fields[0].key(), "mean_tension_N");
-  EXPECT_EQ(dlo::compare::csv_value(dlo::compare::value_of(fields[0], shape)), "1.75");
+  EXPECT_EQ(csv_value(value_of(fields[0], shape)), "1.75");
   EXPECT_EQ(fields[0].name, "mean_tension");
   EXPECT_EQ(fields[0].python_words(), "Mean of the tension along the rod [N].");
   solution.tension.clear();
-  EXPECT_EQ(dlo::compare::csv_value(dlo::compare::value_of(fields[0], shape)), "");
+  EXPECT_EQ(csv_value(value_of(fields[0], shape)), "");
 }
 
 TEST(Document, TextIsALineForEachValueAndATableForEachList) {
@@ -150,3 +139,4 @@ TEST(Document, TextIsALineForEachValueAndATableForEachList) {
 }
 
 }  // namespace
+}  // namespace dlo::compare

@@ -15,12 +15,8 @@
 #include "dlo/compare/solution.hpp"
 #include "dlo/compare/solve.hpp"
 
+namespace dlo::compare {
 namespace {
-
-using dlo::test::has_none;
-
-using namespace dlo::compare;  // NOLINT(google-build-using-namespace)
-using dlo::test::Command;
 
 // A heavy arch in space between two clamps, with a load.
 Scene loaded_arch() {
@@ -130,3 +126,4 @@ TEST_F(Command, SolveWritesVtkThatCheckReadsBack) {
 }
 
 }  // namespace
+}  // namespace dlo::compare

@@ -43,7 +43,7 @@ TEST_P(FormerFailure, EndsWithAnEquilibriumOrACleanError) {
   const std::string file = std::string(DLO_DATA) + "/failures/" + run.scene + ".toml";
   const bool quick = run.demand == Demand::end;
   const bool measures = run.demand == Demand::energy;
-  const test::Outcome result =
+  const test::RunResult result =
       this->run("solve " + file + " --model " + run.model + (measures ? " --format json" : "") +
                 (quick             ? " --time-limit 1"
                  : test::sanitized ? " --time-limit 300"
@@ -66,7 +66,7 @@ TEST_P(FormerFailure, EndsWithAnEquilibriumOrACleanError) {
   if (quick) return;
   ASSERT_EQ(result.status, 0) << result.err;
   if (measures) {
-    const auto energy = nlohmann::json::parse(result.out).at("energy_J").at("total").get<double>();
+    const auto energy = json::parse(result.out).at("energy_J").at("total").get<double>();
     EXPECT_LE(energy, run.expected_energy * (1 + 1e-6)) << result.out;
   }
 }

@@ -17,18 +17,13 @@
 #include "suite/cause.hpp"
 #include "suite/pack.hpp"
 
+namespace dlo::compare {
 namespace {
 
-using dlo::compare::BatteryScene;
-using dlo::compare::Cause;
-using dlo::compare::MarkerMotion;
-using dlo::compare::MotionReference;
-using dlo::test::Outcome;
-using nlohmann::json;
 using testing::HasSubstr;
 
 BatteryScene moving_scene(const std::string& id) {
-  return chosen_scenes(dlo::compare::builtin_battery(), {id}).front();
+  return chosen_scenes(builtin_battery(), {id}).front();
 }
 
 json committed_motion(const std::string& id) {
@@ -42,7 +37,7 @@ Eigen::Vector3d point_of(const json& value) {
 
 TEST(MotionAnswers, CommittedOnesAreThoseOfFreshOnesWithinTheirBounds) {
   const json before = committed_motion("motion_release");
-  const json now = motion_json(dlo::compare::certified_motion(moving_scene("motion_release")));
+  const json now = motion_json(certified_motion(moving_scene("motion_release")));
   ASSERT_EQ(before["times_s"], now["times_s"]);
   ASSERT_EQ(before["methods"], now["methods"]);
   const double bound = before["points_bound_m"];
@@ -73,8 +68,8 @@ TEST(MotionAnswers, TheVibrationHasTheFrequencyOfItsClosedForm) {
 /// shape.
 MarkerMotion recorded(const MotionReference& reference, double faster, double late, double decay) {
   MarkerMotion motion{.file = "made", .positions = {}};
-  for (const double time : dlo::compare::equal_arc_lengths(reference.end_time, reference.frames)) {
-    for (const double s : dlo::compare::equal_arc_lengths(reference.length, 9)) {
+  for (const double time : equal_arc_lengths(reference.end_time, reference.frames)) {
+    for (const double s : equal_arc_lengths(reference.length, 9)) {
       const Eigen::Vector3d rest = reference.at_rest.at(0, s);
       const Eigen::Vector3d moved = reference.motion.at(faster * time - late, s);
       const double stays = std::isinf(decay) ? 0 : std::exp(-decay * time);
@@ -104,7 +99,7 @@ TEST(MotionCauses, NameWhatIsWrongAndNothingElse) {
   EXPECT_TRUE(motion_causes(reference, recorded(reference, 1, 0, 0)).empty());
 }
 
-class MotionSuite : public dlo::test::Command {
+class MotionSuite : public Command {
  protected:
   void SetUp() override {
     Command::SetUp();
@@ -157,7 +152,7 @@ TEST_F(MotionSuite, ABatteryTellsWhatItsMotionLacks) {
         << "schema = \"dlo/suite/1\"\nversion = \"1\"\n[[scene]]\nfile = \"rod.toml\"\nclass = "
            "\"motion\"\nisolates = \"x\"\n[scene.motion]\n"
         << motion;
-    const Outcome result = run("suite --with chain --battery " + path("battery.toml"));
+    const RunResult result = run("suite --with chain --battery " + path("battery.toml"));
     EXPECT_EQ(result.status, 2);
     return result.err;
   };
@@ -167,3 +162,4 @@ TEST_F(MotionSuite, ABatteryTellsWhatItsMotionLacks) {
 }
 
 }  // namespace
+}  // namespace dlo::compare

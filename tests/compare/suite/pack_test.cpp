@@ -19,12 +19,9 @@
 #include "suite/answer.hpp"
 #include "suite/battery.hpp"
 
+namespace dlo::compare {
 namespace {
 
-using dlo::compare::Answer;
-using dlo::compare::BatteryScene;
-using dlo::compare::builtin_battery;
-using dlo::compare::chosen_scenes;
 using nlohmann::json;
 
 std::string text_of(const std::filesystem::path& file) {
@@ -43,13 +40,12 @@ Eigen::Vector3d vector_of(const json& value) {
 }
 
 TEST(Battery, IsTheOneOfItsFile) {
-  const dlo::compare::Battery read = dlo::compare::load_battery(DLO_DATA "/suite/suite.toml");
+  const Battery read = load_battery(DLO_DATA "/suite/suite.toml");
   ASSERT_EQ(read.scenes.size(), builtin_battery().scenes.size());
   for (std::size_t i = 0; i < read.scenes.size(); ++i) {
-    dlo::compare::Scene scene = read.scenes[i].scene;
+    Scene scene = read.scenes[i].scene;
     scene.file = builtin_battery().scenes[i].scene.file;
-    EXPECT_EQ(dlo::compare::scene_document_text(scene),
-              dlo::compare::scene_document_text(builtin_battery().scenes[i].scene));
+    EXPECT_EQ(scene_document_text(scene), scene_document_text(builtin_battery().scenes[i].scene));
   }
 }
 
@@ -59,8 +55,7 @@ TEST(Answers, AreWhereClosedFormsSay) {
     if (!scene.closed_form) continue;
     ++forms;
     const Eigen::Vector3d point =
-        dlo::compare::solve(scene.scene, dlo::compare::Model::energy, {}, {scene.closed_form->at})
-            .shape.points.col(0);
+        solve(scene.scene, Model::energy, {}, {scene.closed_form->at}).shape.points.col(0);
     EXPECT_LT((point - scene.closed_form->point).norm(), 1e-9 * scene.scene.length) << scene.id;
   }
   EXPECT_GE(forms, 4);
@@ -71,9 +66,9 @@ TEST(Pack, CommittedAnswersAreThoseOfFreshOnesWithinTheirBounds) {
                                          "twist_bending", "helix_hanging", "strip_oblique",
                                          "floor",         "peg",           "stretch_pins"};
   for (const BatteryScene& scene : chosen_scenes(builtin_battery(), some)) {
-    const Answer answer = dlo::compare::certified_answer(scene);
+    const Answer answer = certified_answer(scene);
     const json before = reference_answer(scene.id);
-    const json now = dlo::compare::answer_json(answer);
+    const json now = answer_json(answer);
     EXPECT_EQ(before["methods"], now["methods"]) << scene.id;
     const double length = scene.scene.length;
     const double bound = before["points_bound_m"].get<double>() + 1e-9 * length;
@@ -94,8 +89,8 @@ TEST(Pack, CommittedAnswersAreThoseOfFreshOnesWithinTheirBounds) {
 TEST(Pack, BoundsHoldTheRoundingOfWhatIsWritten) {
   for (const BatteryScene& scene :
        chosen_scenes(builtin_battery(), {"clamps_space", "clamps_taut", "floor"})) {
-    const Answer answer = dlo::compare::certified_answer(scene);
-    const json written = dlo::compare::answer_json(answer);
+    const Answer answer = certified_answer(scene);
+    const json written = answer_json(answer);
     const auto expect_within = [&](const Eigen::Vector3d& value, const json& row,
                                    const std::string& name, const std::string& unit) {
       EXPECT_LE((vector_of(row[name + "_" + unit]) - value).norm(),
@@ -141,7 +136,7 @@ TEST(Pack, CommittedOneHasEveryScene) {
     EXPECT_EQ(index["answers"][i]["id"], scene.id);
     const json answer = reference_answer(scene.id);
     // The chains with which rods that stretch or move are compared have discretisation errors.
-    const bool by_chain = scene.motion || scene.scene.stretch != dlo::compare::Stretch::none;
+    const bool by_chain = scene.motion || scene.scene.stretch != Stretch::none;
     EXPECT_LT(answer["points_bound_m"], (by_chain ? 2e-4 : 1e-6) * scene.scene.length);
   }
   for (const auto& file : std::filesystem::directory_iterator(DLO_DATA "/suite/answers")) {
@@ -163,7 +158,7 @@ TEST(Pack, VtuHasThePointsOfTheCsv) {
     if (scene.motion) continue;
     const std::string stem = DLO_DATA "/suite/answers/" + scene.id;
     const std::string grid = text_of(stem + ".vtu");
-    const dlo::compare::MeasuredShape table = dlo::compare::load_shape(stem + ".csv");
+    const MeasuredShape table = load_shape(stem + ".csv");
     const std::vector<double> points = numbers_after(grid, "NumberOfComponents");
     ASSERT_EQ(points.size(), static_cast<std::size_t>(table.points.size())) << scene.id;
     ASSERT_EQ(Eigen::Matrix3Xd::Map(points.data(), 3, table.points.cols()), table.points)
@@ -179,8 +174,7 @@ TEST(Pack, IsTheSameWithOneThreadAndTwo) {
   const std::filesystem::path folder =
       std::filesystem::path(testing::TempDir()) / "dlo_pack_of_threads";
   for (const int threads : {1, 2}) {
-    dlo::compare::write_pack(folder / std::to_string(threads),
-                             dlo::compare::certified_pack("1", scenes, threads));
+    write_pack(folder / std::to_string(threads), certified_pack("1", scenes, threads));
   }
   int files = 0;
   for (const auto& file : std::filesystem::directory_iterator(folder / "1")) {
@@ -192,3 +186,4 @@ TEST(Pack, IsTheSameWithOneThreadAndTwo) {
 }
 
 }  // namespace
+}  // namespace dlo::compare

@@ -18,13 +18,12 @@
 #include "command_fixture.hpp"
 #include "scene_text.hpp"
 
+namespace dlo::compare {
 namespace {
 
-using dlo::test::Outcome;
-using nlohmann::json;
 using testing::HasSubstr;
 
-class SuiteCommand : public dlo::test::Command {
+class SuiteCommand : public Command {
  protected:
   /// Returns the option --with that runs simulator.py with this defect.
   static std::string simulator_with_defect(const std::string& defect) {
@@ -137,7 +136,7 @@ TEST_F(SuiteCommand, AFailureIsNoMissingSupport) {
   const std::string suite = "suite --scenes weight_1 --format json --time-limit 0.2 --with mine=";
   for (const char* program : {"'sh -c \"exit 2\" {shape}'", "'sh -c \"kill -SEGV \\$\\$\" {shape}'",
                               "'sleep 9 {shape}'", "'/no/such/program {shape}'"}) {
-    const Outcome outcome = run(suite + program);
+    const RunResult outcome = run(suite + program);
     EXPECT_EQ(outcome.status, 3) << program << outcome.err;
     EXPECT_EQ(json::parse(outcome.out).at("cards").at(0).at("total").at("failed"), 1) << program;
   }
@@ -176,7 +175,7 @@ TEST_F(SuiteCommand, ASignalEndsAllSimulators) {
   const std::string program = "sh -c \"touch " + path("started_$$") + "; exec sleep 987\" {shape}";
   const std::string two_run =
       "for i in $(seq 200); do [ $(ls " + path("") + " | grep -c started_) -ge 2 ] && break; ";
-  const Outcome outcome = run_line(
+  const RunResult outcome = run_line(
       std::string(DLO_COMMAND) + " suite --jobs 2 --scenes weight --with mine='" + program +
       "' & " + two_run +
       "sleep 0.02; done; kill -TERM $!; wait $!; echo $?; for i in $(seq 200); do pgrep -x -f "
@@ -185,16 +184,15 @@ TEST_F(SuiteCommand, ASignalEndsAllSimulators) {
 }
 
 TEST_F(SuiteCommand, AReferenceThatDoesNotConvergeIsAnEntry) {
-  std::ofstream(path("good.toml")) << dlo::test::steel_rod + dlo::test::level_clamp;
+  std::ofstream(path("good.toml")) << steel_rod + level_clamp;
   // A payload that bends the rod within less than the terms of the reference resolve.
-  std::ofstream(path("bad.toml")) << dlo::test::steel_rod + dlo::test::level_clamp +
-                                         "[[load]]\nat = 0.5\nmass = 1e28\n";
+  std::ofstream(path("bad.toml")) << steel_rod + level_clamp + "[[load]]\nat = 0.5\nmass = 1e28\n";
   std::ofstream(path("battery.toml"))
       << "schema = \"dlo/suite/1\"\nversion = \"1\"\n"
          "[[scene]]\nfile = \"good.toml\"\nclass = \"a|b\"\nisolates = \"x\"\n"
          "[[scene]]\nfile = \"bad.toml\"\nclass = \"a|b\"\nisolates = \"x\"\n";
-  const Outcome outcome = run("suite --with chain --battery " + path("battery.toml") +
-                              " --format json --markdown " + path("card.md"));
+  const RunResult outcome = run("suite --with chain --battery " + path("battery.toml") +
+                                " --format json --markdown " + path("card.md"));
   EXPECT_EQ(outcome.status, 3) << outcome.err;
   const json card = json::parse(outcome.out).at("cards").at(0);
   EXPECT_EQ(card.at("total").at("right"), 1);
@@ -233,17 +231,17 @@ TEST_F(SuiteCommand, HoldsErrorsAgainstABaselineOfRegress) {
                 {"\n3 same\n"});  // a strip is not supported
   // The errors of one simulator in the baseline are divided by ten, so that its errors now have
   // increased.
-  std::vector<dlo::compare::BaselineCase> cases = dlo::compare::load_baseline(file);
+  std::vector<BaselineCase> cases = load_baseline(file);
   ASSERT_EQ(cases.size(), 6U);
-  for (dlo::compare::BaselineCase& one : cases) {
+  for (BaselineCase& one : cases) {
     if (one.program == "chain") one.errors.rms /= 10;
   }
-  dlo::compare::write_file(file, dlo::compare::baseline_text(cases));
+  write_file(file, baseline_text(cases));
   expect_output("suite --with chain" + scenes + gate, 1,
                 {"worse                weight_1 (chain, N = 16)"});
   // An update keeps the cases of other simulators.
   succeeds("suite --with chain" + scenes + gate + " --update");
-  EXPECT_EQ(dlo::compare::load_baseline(file).size(), 6U);
+  EXPECT_EQ(load_baseline(file).size(), 6U);
   EXPECT_EQ(run("suite --with force" + scenes + gate).status, 0);
   EXPECT_EQ(run("suite --with chain --scenes bending" + gate).status, 1);  // not in the baseline
   std::ofstream(file) << "{}";
@@ -274,3 +272,4 @@ TEST_F(SuiteCommand, TellsWhatItIsAskedWrongly) {
 }
 
 }  // namespace
+}  // namespace dlo::compare

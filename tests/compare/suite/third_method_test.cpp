@@ -15,10 +15,9 @@
 #include "dlo/compare/shape.hpp"
 #include "suite/battery.hpp"
 
+namespace dlo::compare {
 namespace {
 
-using dlo::compare::Scene;
-using dlo::compare::Shape;
 using nlohmann::json;
 
 /// Interpolates between the chain's own points by Lagrange's polynomial through the six nearest,
@@ -98,8 +97,7 @@ struct Row {
 class ThirdMethod : public testing::TestWithParam<Row> {};
 
 TEST_P(ThirdMethod, IsWithinTheBoundOfTheAnswerAndItsOwnError) {
-  const dlo::compare::BatteryScene scene =
-      chosen_scenes(dlo::compare::builtin_battery(), {GetParam().id}).front();
+  const BatteryScene scene = chosen_scenes(builtin_battery(), {GetParam().id}).front();
   std::ifstream stream(std::string(DLO_DATA "/suite/answers/") + GetParam().id + ".json");
   const json answer = json::parse(stream);
   const auto s = answer["arc_length_m"].get<std::vector<double>>();
@@ -128,3 +126,4 @@ INSTANTIATE_TEST_SUITE_P(Answers, ThirdMethod,
                          [](const auto& row) { return std::string(row.param.id); });
 
 }  // namespace
+}  // namespace dlo::compare

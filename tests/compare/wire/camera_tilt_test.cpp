@@ -12,14 +12,8 @@
 #include "dlo/compare/error.hpp"
 #include "random_wire.hpp"
 
+namespace dlo::compare {
 namespace {
-
-using namespace dlo::compare;
-using dlo::test::error_of;
-using dlo::test::has_all;
-using dlo::test::nominal_scene;
-
-using dlo::test::one_degree;
 
 /// Shapes of a rod in the coordinates of a camera, each with the second clamp at another position,
 /// and their scenes, whose nominal EI is wrong.
@@ -37,7 +31,7 @@ Pictures pictures(double EI, const Eigen::AngleAxisd& tilt, const Eigen::Vector3
     scene.grippers[0].position = {0.1, 0.2, 0};
     scene.grippers[1].position = {x, 0.3, 0};
     const Eigen::Matrix3Xd points =
-        dlo::test::energy_model_shape(scene, equal_arc_lengths(scene.length, 21)).points;
+        energy_model_shape(scene, equal_arc_lengths(scene.length, 21)).points;
     const Eigen::Vector3d about = scene.grippers[0].position;
     result.shapes.push_back(
         {"seen", (tilt.matrix() * (points.colwise() - about)).colwise() + about, {}});
@@ -86,7 +80,7 @@ TEST(CameraTilt, IsPutIntoScenesAsTheCameraSawThem) {
   for (std::size_t i = 0; i < seen.scenes.size(); ++i) {
     const Scene scene = calibrated_scene(seen.scenes[i], rod);
     const Eigen::Matrix3Xd points =
-        dlo::test::energy_model_shape(scene, equal_arc_lengths(scene.length, 21)).points;
+        energy_model_shape(scene, equal_arc_lengths(scene.length, 21)).points;
     EXPECT_LT((points - seen.shapes[i].points).cwiseAbs().maxCoeff(), 1e-7 * scene.length);
   }
 }
@@ -121,7 +115,7 @@ double log_probability(const Scene& scene, double log_modulus, const MeasuredSha
   turned.scale_modulus(std::exp(log_modulus));
   const auto turn = [&](std::size_t clamp, int i) {
     const double angle = 3 * tolerance * (2.0 * i / (directions - 1) - 1);
-    turned.grippers[clamp].direction = dlo::test::turned(*scene.grippers[clamp].direction, angle);
+    turned.grippers[clamp].direction = test::turned(*scene.grippers[clamp].direction, angle);
     return angle * angle / (2 * tolerance * tolerance);
   };
   for (int i = 0; i < directions; ++i) {
@@ -129,7 +123,7 @@ double log_probability(const Scene& scene, double log_modulus, const MeasuredSha
     for (int j = 0; j < directions; ++j) {
       const double second = turn(1, j);
       const Eigen::Matrix3Xd points =
-          dlo::energy_model::solve_energy(energy_problem(turned)).sample(shape.arc_length).points;
+          energy_model::solve_energy(energy_problem(turned)).sample(shape.arc_length).points;
       sum +=
           std::exp(-(points - shape.points).squaredNorm() / (2 * noise * noise) - first - second);
     }
@@ -146,8 +140,7 @@ TEST(WireFit, StiffnessIsLikeliestWhateverTheOtherNumbersAre) {
   constexpr double tolerance = 10 * one_degree;
   Scene scene = nominal_scene(1e-3);
   scene.grippers[1].position = {0.9, 0, 0};
-  const MeasuredShape shape =
-      dlo::test::energy_model_shape(scene, equal_arc_lengths(scene.length, 11));
+  const MeasuredShape shape = energy_model_shape(scene, equal_arc_lengths(scene.length, 11));
   const MaterialFit fit = fit_material(
       std::vector<Scene>(mountings, scene), std::vector<MeasuredShape>(mountings, shape),
       {.direction_tolerance = tolerance, .choose_options = false, .noise = noise});
@@ -167,3 +160,4 @@ TEST(WireFit, StiffnessIsLikeliestWhateverTheOtherNumbersAre) {
 }
 
 }  // namespace
+}  // namespace dlo::compare
