@@ -8,26 +8,7 @@
 #include <cstddef>
 #include <random>
 
-#include "../sanitized.hpp"
-
-// The sanitizers bring an allocator of their own.
-#if !defined(DLO_SANITIZED)
-#define DLO_COUNTS_ALLOCATIONS
-
-namespace {
-long allocations = 0;
-}
-
-extern "C" {
-// NOLINTNEXTLINE(bugprone-reserved-identifier): glibc's name
-void* __libc_malloc(std::size_t size);
-
-void* malloc(std::size_t size) {
-  ++allocations;
-  return __libc_malloc(size);
-}
-}
-#endif
+#include "../count_allocations.hpp"
 
 namespace dlo::energy_model {
 namespace {
@@ -46,13 +27,17 @@ Span gripped_span(bool planar) {
   return span;
 }
 
-Span free_span(bool planar) {
-  Span span = gripped_span(planar);
+/// Returns the span without clamps, held at 0.2 instead of its begin.
+Span without_clamps(Span span) {
   span.start_direction.reset();
   span.end_direction.reset();
+  span.twist.reset();
+  span.principal_d1.reset();
   span.anchor = 0.2;
   return span;
 }
+
+Span free_span(bool planar) { return without_clamps(gripped_span(planar)); }
 
 Span span_on_obstacle(bool planar) {
   Span span = gripped_span(planar);
@@ -106,14 +91,7 @@ Span natural_span(bool planar) {
   return span;
 }
 
-Span free_natural_span(bool planar) {
-  Span span = natural_span(planar);
-  span.start_direction.reset();
-  span.end_direction.reset();
-  span.twist.reset();
-  span.anchor = 0.2;
-  return span;
-}
+Span free_natural_span(bool planar) { return without_clamps(natural_span(planar)); }
 
 /// Returns a strip with three different stiffnesses and a section with three others; in space its
 /// principal axes differ from those of the span.
@@ -125,15 +103,7 @@ Span strip_span(bool planar) {
   return span;
 }
 
-Span free_strip_span(bool planar) {
-  Span span = strip_span(planar);
-  span.start_direction.reset();
-  span.end_direction.reset();
-  span.twist.reset();
-  span.principal_d1.reset();
-  span.anchor = 0.2;
-  return span;
-}
+Span free_strip_span(bool planar) { return without_clamps(strip_span(planar)); }
 
 /// Returns the span with two line loads that overlap, in addition to the weight.
 Span line_loaded_span(bool planar) {

@@ -3,30 +3,14 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <cstddef>
 #include <vector>
 
-#include "../sanitized.hpp"
+#include "../count_allocations.hpp"
 #include "dlo/force_model/simulation.hpp"
 #include "rods.hpp"
 #include "twisted_rods.hpp"
 
-// The sanitizers bring an allocator of their own.
-#if !defined(DLO_SANITIZED)
-
-namespace {
-long allocations = 0;
-}
-
-extern "C" {
-// NOLINTNEXTLINE(bugprone-reserved-identifier): glibc's name
-void* __libc_malloc(std::size_t size);
-
-void* malloc(std::size_t size) {
-  ++allocations;
-  return __libc_malloc(size);
-}
-}
+#if defined(DLO_COUNTS_ALLOCATIONS)
 
 namespace dlo::force_model {
 namespace {
