@@ -4,7 +4,7 @@ import subprocess
 
 import numpy
 import pytest
-from conftest import without_times
+from conftest import refuses, without_times
 
 import dlo
 
@@ -116,7 +116,5 @@ def test_refusals_are_the_commands(wire, found, command, text):
 
 
 def test_arguments_that_are_no_calibration_are_told(wire):
-    with pytest.raises(dlo.InputError, match="calibrated: a int .allowed: a dlo.MaterialFit or dlo.MotionFit, or"):
-        dlo.solve(wire, calibrated=3)
-    with pytest.raises(dlo.InputError, match="none.toml"):
-        dlo.check(wire, [[0, 0, 0], [1, 0, 0]], calibrated="none.toml")
+    refuses("calibrated: a int .allowed: a dlo.MaterialFit or dlo.MotionFit, or", dlo.solve, wire, calibrated=3)
+    refuses("none.toml", dlo.check, wire, [[0, 0, 0], [1, 0, 0]], calibrated="none.toml")

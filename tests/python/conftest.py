@@ -72,6 +72,12 @@ def command():
     return os.environ["DLO_COMMAND"]
 
 
+def refuses(words, function, *arguments, **options):
+    """Expects that a call is refused with an InputError whose message matches `words`."""
+    with pytest.raises(dlo.InputError, match=words):
+        function(*arguments, **options)
+
+
 def without_times(document):
     """Returns a document without the numbers that a clock has measured."""
     if isinstance(document, dict):

@@ -6,6 +6,8 @@ import xml.etree.ElementTree
 
 import pytest
 
+from conftest import refuses
+
 import dlo
 
 SCENE = "data/scenes/spring_steel_175.toml"
@@ -40,8 +42,7 @@ def test_regress_is_the_commands(root, command, tmp_path):
 
 def test_regress_fails_what_has_changed(scene, tmp_path):
     baseline = tmp_path / "shapes.toml"
-    with pytest.raises(dlo.InputError, match="shapes.toml"):
-        dlo.regress(scene, baseline, model="chain")
+    refuses("shapes.toml", dlo.regress, scene, baseline, model="chain")
     dlo.regress(scene, baseline, model="chain", update=True)
     scene.gravity = (0, -9, 0)
     found = dlo.regress(scene, baseline, model="chain")
@@ -59,5 +60,4 @@ def test_regress_fails_what_has_changed(scene, tmp_path):
         (lambda: dlo.regress(scene, baseline, time=1), "nothing moves"),
         (lambda: dlo.regress(scene, baseline, relative="1%"), r"relative = '1%': a str \(allowed: a number"),
     ]:
-        with pytest.raises(dlo.InputError, match=words):
-            call()
+        refuses(words, call)

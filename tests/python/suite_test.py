@@ -10,6 +10,8 @@ import time
 import numpy
 import pytest
 
+from conftest import refuses
+
 import dlo
 
 ROOT = pathlib.Path(os.environ["DLO_ROOT"])
@@ -191,8 +193,7 @@ def test_a_run_ends_at_the_time_limit_or_is_late(run):
     ],
 )
 def test_bad_arguments_are_told_by_name(arguments, words):
-    with pytest.raises(dlo.InputError, match=words):
-        dlo.suite(**{"run": rod, **arguments})
+    refuses(words, dlo.suite, **{"run": rod, **arguments})
 
 
 def test_a_scene_as_a_document_has_the_polygon_that_is_asked_for():
