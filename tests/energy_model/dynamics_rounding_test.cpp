@@ -21,9 +21,7 @@ namespace {
 /// Returns the frames at `frame` and 0.4 s.
 Dynamics simulate_impact(const std::vector<double>& breaks, double frame) {
   constexpr double start = 0.3;
-  MovingRod rod;
-  rod.problem = test::heavy_cantilever(0, 0);
-  rod.inertia.mass_per_length = 1;
+  MovingRod rod{.problem = test::heavy_cantilever(0, 0), .inertia = {.mass_per_length = 1}};
   rod.material_damping = 0.01;
   rod.motions = {[](double time) {
     const Vector3d velocity(0, 0.4, 0);
@@ -105,8 +103,7 @@ void expect_pendulum(const Dynamics& moved, const std::vector<double>& times, do
     const double pivot = acceleration * times[k] * times[k] / 2;
     const double theta = pendulum_angle(gravity, acceleration, times[k]);
     const Vector3d expected(pivot + std::sin(theta), -std::cos(theta), 0);
-    const Vector3d tip = moved.frames[k].sample(std::vector<double>{1.0}).points.col(0);
-    EXPECT_LT((tip - expected).norm(), share) << times[k];
+    EXPECT_LT((test::point_at(moved.frames[k], 1) - expected).norm(), share) << times[k];
   }
 }
 

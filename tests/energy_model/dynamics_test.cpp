@@ -23,24 +23,18 @@ constexpr double first_beta = 1.8751040687119612;
 /// Period of a cantilever with EI = l = rho A = 1.
 constexpr double first_period = 2 * pi / (first_beta * first_beta);
 
+MovingRod with_unit_mass(const Problem& problem) {
+  return {.problem = problem, .inertia = {.mass_per_length = 1}};
+}
+
 MovingRod moving_cantilever(double gamma) {
-  MovingRod rod;
-  rod.problem = test::heavy_cantilever(gamma, 0);
-  rod.inertia.mass_per_length = 1;
-  return rod;
+  return with_unit_mass(test::heavy_cantilever(gamma, 0));
 }
 
 /// Returns a rod between two clamps that are nearer to each other than the rod is long.
-MovingRod rod_between_clamps(double gamma) {
-  MovingRod rod;
-  rod.problem = test::two_clamps(gamma, 0.8);
-  rod.inertia.mass_per_length = 1;
-  return rod;
-}
+MovingRod rod_between_clamps(double gamma) { return with_unit_mass(test::two_clamps(gamma, 0.8)); }
 
-Vector3d tip(const MovingFrame& frame) {
-  return frame.sample(std::vector<double>{1.0}).points.col(0);
-}
+Vector3d tip(const MovingFrame& frame) { return test::point_at(frame, 1); }
 
 Dynamics run(const MovingRod& rod, const StartingShape& start, const std::vector<double>& times,
              const DynamicsOptions& options = {}) {
@@ -468,12 +462,12 @@ TEST(Dynamics, GravityAndLoadsAreZeroWherePointsSitAtTheFirstGrip) {
   double gravity = 0;
   for (int i = 0; i <= 2 * panels; ++i) {
     const double share = i == 0 || i == 2 * panels ? 1 : (i % 2 == 1 ? 4 : 2);
-    const Vector3d at = frame.sample(std::vector<double>{i / (2.0 * panels)}).points.col(0);
+    const Vector3d at = test::point_at(frame, i / (2.0 * panels));
     gravity -= share / (6 * panels) * rod.problem.weight_per_length.dot(at - first);
   }
   EXPECT_GT(std::abs(gravity), 0.5);
   EXPECT_NEAR(frame.energy.gravity, gravity, 1e-6);
-  const Vector3d loaded = frame.sample(std::vector<double>{0.8}).points.col(0);
+  const Vector3d loaded = test::point_at(frame, 0.8);
   EXPECT_NEAR(frame.energy.load, -rod.problem.loads[0].force.dot(loaded - first), 1e-9);
 }
 
@@ -531,13 +525,11 @@ TEST(Dynamics, IsTheSameInAllUnits) {
       const MovingFrame& a = unit.frames[k];
       const MovingFrame& b = other.frames[k];
       EXPECT_LT((tip(a) - test::point_at(b, length) / length).norm(), 1e-6);
-      EXPECT_NEAR(b.energy.kinetic / energy, a.energy.kinetic, 1e-6);
-      EXPECT_NEAR(b.energy.bending / energy, a.energy.bending, 1e-6);
-      EXPECT_NEAR(b.energy.gravity / energy, a.energy.gravity, 1e-6);
-      EXPECT_NEAR(b.energy.load / energy, a.energy.load, 1e-6);
-      EXPECT_NEAR(b.energy.obstacles / energy, a.energy.obstacles, 1e-6);
-      EXPECT_NEAR(b.energy.dissipated / energy, a.energy.dissipated, 1e-6);
-      EXPECT_NEAR(b.energy.work / energy, a.energy.work, 1e-6);
+      using Part = EnergyBalance;
+      for (const auto part : {&Part::kinetic, &Part::bending, &Part::gravity, &Part::load,
+                              &Part::obstacles, &Part::dissipated, &Part::work}) {
+        EXPECT_NEAR(b.energy.*part / energy, a.energy.*part, 1e-6);
+      }
       EXPECT_LT((b.grips[0].force / force - a.grips[0].force).norm(), 1e-4);
       EXPECT_LT((b.grips[0].torque / energy - a.grips[0].torque).norm(), 1e-4);
       EXPECT_LT((b.obstacles[0] / force - a.obstacles[0]).norm(), 1e-4);

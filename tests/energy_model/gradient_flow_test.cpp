@@ -15,8 +15,8 @@ namespace dlo::energy_model {
 namespace {
 
 /// Returns a heavy rod of unit length and stiffness, clamped at both ends, the second one rolled.
-Problem rolled(const Eigen::Vector3d& end, const Eigen::Vector3d& direction, double weight,
-               double c, double roll) {
+Problem heavy_rolled_clamps(const Eigen::Vector3d& end, const Eigen::Vector3d& direction,
+                            double weight, double c, double roll) {
   Problem problem = test::rolled_clamps(end, direction, c, roll);
   problem.weight_per_length = {0, -weight, 0};
   return problem;
@@ -37,7 +37,7 @@ double asymmetry(const Equilibrium& shape) {
 // 12 it is a saddle.
 TEST(GradientFlow, LeavesTheSymmetryThatHasBecomeUnstable) {
   const auto at = [](double roll) {
-    return rolled({0.8, 0, 0}, Eigen::Vector3d::UnitX(), 50, 2, roll);
+    return heavy_rolled_clamps({0.8, 0, 0}, Eigen::Vector3d::UnitX(), 50, 2, roll);
   };
   const Equilibrium before = test::converged(solve_exact(at(11)));
   EXPECT_LT(asymmetry(before), 1e-9);
@@ -49,7 +49,7 @@ TEST(GradientFlow, LeavesTheSymmetryThatHasBecomeUnstable) {
 
 TEST(GradientFlow, GivesUpTwistBeyondAFold) {
   const auto at = [](double roll) {
-    return rolled({0.6, 0.2, 0.1}, {0.8, 0.3, -0.5}, 20, 0.7, roll);
+    return heavy_rolled_clamps({0.6, 0.2, 0.1}, {0.8, 0.3, -0.5}, 20, 0.7, roll);
   };
   const Equilibrium before = solve_exact(at(5));
   const Equilibrium after = solve_exact(at(5.25));

@@ -60,24 +60,33 @@ inline energy_model::Problem random_touching_problem(unsigned seed, bool space,
   return problem;
 }
 
+inline double draw_uniform(std::mt19937& random, double low, double high) {
+  return low + (high - low) * std::generate_canonical<double, 53>(random);
+}
+
+/// Returns a unit vector, in the x-y plane unless `space`.
+inline Eigen::Vector3d draw_direction(std::mt19937& random, bool space, double least_x = -1) {
+  const double x = draw_uniform(random, least_x, 1);
+  const double y = draw_uniform(random, -1, 1);
+  return Eigen::Vector3d(x, y, space ? draw_uniform(random, -1, 1) : 0).normalized();
+}
+
 /// Adds a body that the shape without it would penetrate, clear of the grips. @return whether there
 /// is one
 inline bool add_penetrated_body(std::mt19937& random, bool space, energy_model::Problem& problem) {
-  const auto uniform = [&random](double low, double high) {
-    return low + (high - low) * std::generate_canonical<double, 53>(random);
-  };
   const energy_model::Equilibrium free = energy_model::solve_energy(problem);
   if (!energy_model::succeeded(free.status)) return false;
   for (int attempt = 0; attempt < 100; ++attempt) {
-    const double radius = std::pow(10, uniform(-2, -0.7));
-    const double turn = uniform(0, 6.28);
-    const Eigen::Vector3d aside(std::cos(turn), std::sin(turn), space ? uniform(-0.5, 0.5) : 0);
-    const double at = uniform(0.2, 1);
-    const double off = radius * uniform(0.3, 0.9);
+    const double radius = std::pow(10, draw_uniform(random, -2, -0.7));
+    const double turn = draw_uniform(random, 0, 6.28);
+    const Eigen::Vector3d aside(std::cos(turn), std::sin(turn),
+                                space ? draw_uniform(random, -0.5, 0.5) : 0);
+    const double at = draw_uniform(random, 0.2, 1);
+    const double off = radius * draw_uniform(random, 0.3, 0.9);
     const Eigen::Vector3d centre =
         free.sample(std::array{at}).points.col(0) + off * aside.normalized();
-    const double leans_x = space ? uniform(-0.5, 0.5) : 0;
-    const double leans_y = space ? uniform(-0.5, 0.5) : 0;
+    const double leans_x = space ? draw_uniform(random, -0.5, 0.5) : 0;
+    const double leans_y = space ? draw_uniform(random, -0.5, 0.5) : 0;
     const Eigen::Vector3d axis(leans_x, leans_y, 1);
     const std::array<obstacle::Body, 3> bodies = {
         obstacle::Body::cylinder(centre, axis, radius), obstacle::Body::sphere(centre, radius),
@@ -103,20 +112,12 @@ inline bool add_penetrated_body(std::mt19937& random, bool space, energy_model::
 /// penetrate it. Returns std::nullopt if no such body is found.
 inline std::optional<energy_model::Problem> random_problem_with_body(unsigned seed, bool space) {
   std::mt19937 random(seed + 977 * static_cast<unsigned>(space));
-  const auto uniform = [&random](double low, double high) {
-    return low + (high - low) * std::generate_canonical<double, 53>(random);
-  };
-  const auto direction = [&]() -> Eigen::Vector3d {
-    const double x = uniform(-1, 1);
-    const double y = uniform(-1, 1);
-    return Eigen::Vector3d(x, y, space ? uniform(-1, 1) : 0).normalized();
-  };
-  energy_model::Problem problem = heavy_cantilever(std::pow(10, uniform(0, 4)), 0);
-  problem.grips[0].direction = direction();
+  energy_model::Problem problem = heavy_cantilever(std::pow(10, draw_uniform(random, 0, 4)), 0);
+  problem.grips[0].direction = draw_direction(random, space);
   if (random() % 2 == 0) {
-    const double reach = uniform(0.3, 0.9);
-    problem.grips.push_back({1, reach * direction()});
-    if (random() % 2 == 0) problem.grips[1].direction = direction();
+    const double reach = draw_uniform(random, 0.3, 0.9);
+    problem.grips.push_back({1, reach * draw_direction(random, space)});
+    if (random() % 2 == 0) problem.grips[1].direction = draw_direction(random, space);
   }
   if (!add_penetrated_body(random, space, problem)) return std::nullopt;
   return problem;
@@ -126,13 +127,10 @@ inline std::optional<energy_model::Problem> random_problem_with_body(unsigned se
 /// there is one
 inline bool add_penetrated_half_space(std::mt19937& random, bool space,
                                       energy_model::Problem& problem) {
-  const auto uniform = [&random](double low, double high) {
-    return low + (high - low) * std::generate_canonical<double, 53>(random);
-  };
   const energy_model::Equilibrium free = energy_model::solve_energy(problem);
   if (!energy_model::succeeded(free.status)) return false;
-  const double tilt = uniform(-0.5, 0.5);
-  const double aside = space ? uniform(-0.3, 0.3) : 0;
+  const double tilt = draw_uniform(random, -0.5, 0.5);
+  const double aside = space ? draw_uniform(random, -0.3, 0.3) : 0;
   const Eigen::Vector3d normal = Eigen::Vector3d(tilt, 1, aside).normalized();
   const auto s = energy_model::equal_arc_lengths(problem.length, 201);
   const double lowest = (normal.transpose() * free.sample(s).points).minCoeff();
@@ -144,7 +142,7 @@ inline bool add_penetrated_half_space(std::mt19937& random, bool space,
     }
   }
   if (!(grips - lowest > 0.02)) return false;
-  const double height = lowest + uniform(0.1, 0.9) * (grips - lowest);
+  const double height = lowest + draw_uniform(random, 0.1, 0.9) * (grips - lowest);
   problem.obstacles = {{obstacle::Body::half_space(height * normal, normal)}};
   return true;
 }
@@ -154,21 +152,14 @@ inline bool add_penetrated_half_space(std::mt19937& random, bool space,
 /// the rod's shape would penetrate it. Returns std::nullopt if no such obstacle is found.
 inline std::optional<energy_model::Problem> random_framed_problem(unsigned seed, bool space) {
   std::mt19937 random(seed + 1009 * static_cast<unsigned>(space));
-  const auto uniform = [&random](double low, double high) {
-    return low + (high - low) * std::generate_canonical<double, 53>(random);
-  };
-  const auto direction = [&](double least_x) -> Eigen::Vector3d {
-    const double x = uniform(least_x, 1);
-    const double y = uniform(-1, 1);
-    return Eigen::Vector3d(x, y, space ? uniform(-1, 1) : 0).normalized();
-  };
-  energy_model::Problem problem = heavy_cantilever(std::pow(10, uniform(0, 3)), 0);
-  problem.torsional_stiffness = uniform(0.5, 1);
-  problem.grips[0].direction = direction(-0.2);
+  energy_model::Problem problem = heavy_cantilever(std::pow(10, draw_uniform(random, 0, 3)), 0);
+  problem.torsional_stiffness = draw_uniform(random, 0.5, 1);
+  problem.grips[0].direction = draw_direction(random, space, -0.2);
   problem.grips[0].frame = energy_model::FrameHold{};
-  const double reach = uniform(0.4, 0.95);
-  problem.grips.push_back({1, reach * direction(0.5), direction(-0.2), energy_model::FrameHold{}});
-  problem.grips[1].frame->roll = uniform(-1, 1) * 2 * M_PI;
+  const double reach = draw_uniform(random, 0.4, 0.95);
+  problem.grips.push_back({1, reach * draw_direction(random, space, 0.5),
+                           draw_direction(random, space, -0.2), energy_model::FrameHold{}});
+  problem.grips[1].frame->roll = draw_uniform(random, -1, 1) * 2 * M_PI;
   const bool placed = random() % 2 == 0 ? add_penetrated_half_space(random, space, problem)
                                         : add_penetrated_body(random, space, problem);
   if (!placed) return std::nullopt;

@@ -87,16 +87,13 @@ TEST(TautLine, IsTheLimitOfVanishingSlack) {
   double before = 0;
   for (const double slack : {1e-4, 1e-6}) {
     problem.grips[1].position.x() = 3 - 2 * slack;
-    const Equilibrium solved = solve_energy(problem);
-    ASSERT_TRUE(succeeded(solved.status)) << solved.message;
+    const Equilibrium solved = test::require_usable(solve_energy(problem));
     EXPECT_EQ(std::signbit(solved.twists[0].torque), std::signbit(taut.twists[0].torque));
     const double away = std::abs(solved.grips[1].torque.x() - taut.grips[1].torque.x());
     EXPECT_LT(away, 10 * std::sqrt(slack));
     if (before > 0) EXPECT_LT(away, before);
     before = away;
-    const std::vector<double> middle = {1.0};
-    EXPECT_LT((solved.sample(middle).points - taut.sample(middle).points).norm(),
-              2 * std::sqrt(slack));
+    EXPECT_LT((test::point_at(solved, 1) - test::point_at(taut, 1)).norm(), 2 * std::sqrt(slack));
   }
 }
 
@@ -187,9 +184,7 @@ TEST(Taut, TensionFollowsFromTheSlack) {
     for (const double angle : {0.5, 1.5, 3.0}) {
       for (const bool pinned : {false, true}) {
         const Problem problem = rod_with_slack(slack, angle, -0.8, pinned);
-        const Equilibrium solved = solve_energy(problem);
-        ASSERT_EQ(solved.status, SolveStatus::converged)
-            << slack << ", " << angle << ": " << solved.message;
+        const Equilibrium solved = test::converged(solve_energy(problem));
         const std::vector<Segment> segments = segments_of(span_of_problem(problem));
         ASSERT_EQ(segments.size(), 1U);
         if (!segments[0].taut()) continue;
@@ -211,9 +206,7 @@ TEST(Taut, IsSolvedUpToTensionsOfTenMillion) {
   for (const double slack : {1e-2, 1e-3, 5e-4}) {
     for (const double angle : {0.1, 1.5, 3.0}) {
       const Problem problem = rod_with_slack(slack, angle, -2.5, false);
-      const Equilibrium solved = solve_energy(problem);
-      ASSERT_EQ(solved.status, SolveStatus::converged)
-          << slack << ", " << angle << ": " << solved.message;
+      const Equilibrium solved = test::converged(solve_energy(problem));
       EXPECT_GT(solved.smallest_eigenvalue, 0);
       const Samples ends = solved.sample(std::vector<double>{0, 1});
       EXPECT_LT((ends.points.col(1) - problem.grips[1].position).norm(), 1e-10);

@@ -26,17 +26,12 @@ Problem cable() {
 }
 
 MovingRod moving_rod(const Problem& problem) {
-  MovingRod rod;
-  rod.problem = problem;
-  rod.inertia.mass_per_length = 0.05;
-  return rod;
+  return {.problem = problem, .inertia = {.mass_per_length = 0.05}};
 }
 
 Grip clamp_with_frame(double at, const Eigen::Vector3d& position, const Eigen::Vector3d& direction,
                       const Eigen::Vector3d& d1) {
-  Grip grip{.at = at, .position = position, .direction = direction};
-  grip.frame = FrameHold{.d1 = d1};
-  return grip;
+  return {.at = at, .position = position, .direction = direction, .frame = FrameHold{.d1 = d1}};
 }
 
 double farthest(const Eigen::Matrix3Xd& a, const Eigen::Matrix3Xd& b) {
@@ -52,13 +47,10 @@ GripMotion roll_motion(const Grip& grip, double angle, double until) {
 /// an equilibrium.
 void expect_converges_to_equilibrium(const MovingRod& rod, const Problem& rolled,
                                      const char* what) {
-  const Equilibrium before = solve_energy(rod.problem);
-  ASSERT_TRUE(succeeded(before.status)) << what;
-  const Dynamics moved = simulate(rod, before.sample, std::vector<double>{2, 30});
-  ASSERT_EQ(moved.status, SolveStatus::converged) << what << ": " << moved.message;
+  const Equilibrium before = test::require_usable(solve_energy(rod.problem));
+  const Dynamics moved = test::converged(simulate(rod, before.sample, std::vector<double>{2, 30}));
   EXPECT_LT(moved.energy_error, 1e-5) << what;
-  const Equilibrium after = solve_energy(rolled);
-  ASSERT_TRUE(succeeded(after.status)) << what;
+  const Equilibrium after = test::require_usable(solve_energy(rolled));
   const std::vector<double> s = equal_arc_lengths(rod.problem.length, 33);
   const Samples last = moved.frames.back().sample(s);
   const Samples at_rest = after.sample(s);
@@ -80,13 +72,11 @@ TEST(TwistMotion, ARolledClampLeavesTheEquilibriumThatItHolds) {
       clamp_with_frame(0, {0, 0, 0}, Eigen::Vector3d::UnitX(), Eigen::Vector3d::UnitY()),
       clamp_with_frame(0.8, {0.6, 0.1, 0}, Eigen::Vector3d::UnitX(), Eigen::Vector3d::UnitY())};
   // A part that yields more to twist than it does to bending.
-  Section part;
-  part.begin = 0.3;
-  part.end = 0.5;
-  part.bending_stiffness = 0.02;
-  part.torsional_stiffness = 0.003;
-  part.weight_per_length = problem.weight_per_length;
-  problem.sections = {part};
+  problem.sections = {{.begin = 0.3,
+                       .end = 0.5,
+                       .bending_stiffness = 0.02,
+                       .torsional_stiffness = 0.003,
+                       .weight_per_length = problem.weight_per_length}};
   MovingRod rod = moving_rod(problem);
   rod.inertia.of_sections = {rod.inertia.mass_per_length};
   rod.air_drag = 0.5;
@@ -141,7 +131,7 @@ TEST(TwistMotion, AStraightenedWireCurlsAsAPolygon) {
         test::converged(simulate(rod, straight_rod(along), times, {.spatial = spatial}));
     EXPECT_LT(moved.energy_error, 1e-6);
     for (std::size_t k = 0; k < times.size(); ++k) {
-      const Eigen::Vector3d tip = moved.frames[k].sample(std::vector<double>{1.0}).points.col(0);
+      const Eigen::Vector3d tip = test::point_at(moved.frames[k], 1);
       const Eigen::Vector2d seen(tip.dot(along), tip.dot(across));
       EXPECT_LT((seen - expected.col(static_cast<Eigen::Index>(k))).norm(), 1e-3)
           << spatial << ", " << times[k];

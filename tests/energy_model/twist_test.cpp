@@ -11,6 +11,7 @@
 #include "dlo/energy_model/turns.hpp"
 #include "problems.hpp"
 #include "rolled_clamps.hpp"
+#include "solved.hpp"
 
 namespace dlo::energy_model {
 namespace {
@@ -20,11 +21,7 @@ Problem turned_rod(double distance, double roll, double weight) {
   return test::framed_clamps(weight, distance, 0.75, roll);
 }
 
-Equilibrium solved(const Problem& problem) {
-  Equilibrium result = solve_energy(problem);
-  EXPECT_EQ(result.status, SolveStatus::converged) << result.message;
-  return result;
-}
+Equilibrium solved(const Problem& problem) { return test::converged(solve_energy(problem)); }
 
 double axial_torque(const Equilibrium& equilibrium) { return equilibrium.twists.at(0).torque; }
 
@@ -140,10 +137,8 @@ TEST(Twist, AgreesWithMultipleShooting) {
   problem.grips.front().frame->roll = 0.7;
   const auto expect_agreement = [&] {
     const Equilibrium energy = solved(problem);
-    const Equilibrium exact = solve_exact(problem);
-    ASSERT_EQ(exact.status, SolveStatus::converged) << exact.message;
-    const std::vector<double> s = equal_arc_lengths(1, 21);
-    EXPECT_LT((energy.sample(s).points - exact.sample(s).points).colwise().norm().maxCoeff(), 1e-9);
+    const Equilibrium exact = test::converged(solve_exact(problem));
+    EXPECT_LT(test::largest_point_distance(energy, exact), 1e-9);
     EXPECT_NEAR(energy.twists.at(0).angle, exact.twists.at(0).angle, 1e-8);
   };
   for (const double roll : {-5.0, 3.0}) {
@@ -167,8 +162,7 @@ TEST(Twist, IsFollowedWhileTheGripperTurns) {
   EnergySolver solver;
   Equilibrium followed = solver.solve(turned_rod(0.7, 1, 8));
   for (const double roll : {1.1, 1.3, 1.2}) {
-    followed = solver.follow(turned_rod(0.7, roll, 8));
-    ASSERT_EQ(followed.status, SolveStatus::converged) << followed.message;
+    followed = test::converged(solver.follow(turned_rod(0.7, roll, 8)));
     const Equilibrium fresh = solved(turned_rod(0.7, roll, 8));
     EXPECT_LT(followed.evaluations, fresh.evaluations);
     EXPECT_NEAR(followed.energy.total(), fresh.energy.total(), 1e-9);
@@ -193,9 +187,7 @@ TEST(Twist, StartedFromAnotherRollItMeetsItsOwn) {
   Problem problem = test::framed_clamps(5, 0.7, 0.8, 0);
   const auto solved = [&problem](double roll, const Equilibrium* start) {
     problem.grips[1].frame->roll = roll;
-    Equilibrium rod = solve_energy(problem, {.start = start});
-    EXPECT_EQ(rod.status, SolveStatus::converged) << rod.message;
-    return rod;
+    return test::converged(solve_energy(problem, {.start = start}));
   };
   const Equilibrium first = solved(1, nullptr);
   for (const double roll : {1.01, 1.3, 0.6}) {

@@ -108,10 +108,6 @@ Eigen::Vector3d tip_under_drag(const TipRod& rod, const Eigen::Vector3d& directi
   return -reached(tangent).head<3>();
 }
 
-Eigen::Vector3d point_at_arc_length(const Equilibrium& shape, double at = 1) {
-  return test::point_at(shape, at);
-}
-
 Eigen::Vector3d tip_tangent_of(const Equilibrium& shape) {
   return test::sample_at(shape, 1).tangents.col(0);
 }
@@ -203,7 +199,7 @@ TEST(WithoutPotential, ACoupleAcrossAClampInAnyPlaneRollsTheRodUp) {
     const double angle = lambda * pi;
     const Eigen::Vector3d expected =
         std::sin(angle) / angle * direction + (1 - std::cos(angle)) / angle * axis.cross(direction);
-    EXPECT_LT((point_at_arc_length(result) - expected).norm(), 1e-11);
+    EXPECT_LT((test::point_at(result, 1) - expected).norm(), 1e-11);
     // A couple that follows the section is equal to this dead couple, because its axis does not
     // rotate.
     problem.loads = {{1, {0, 0, 0}, {0, angle, 0}, true}};
@@ -212,7 +208,7 @@ TEST(WithoutPotential, ACoupleAcrossAClampInAnyPlaneRollsTheRodUp) {
     const Equilibrium follows = solve_exact(problem);
     // d2 = t x d1 = t x (axis x t) = axis
     expect_balance_alone(follows);
-    EXPECT_LT((point_at_arc_length(follows) - expected).norm(), 1e-10);
+    EXPECT_LT((test::point_at(follows, 1) - expected).norm(), 1e-10);
     EXPECT_LT((follows.grips[0].torque + angle * axis).norm(), 1e-9);
   }
 }
@@ -241,8 +237,8 @@ TEST(WithoutPotential, AnObliqueCoupleWindsTheRodIntoAHelix) {
   const Eigen::Vector3d m = first + last;
   const Eigen::Vector3d middle = integral(m, 0.35, direction);
   const Eigen::Vector3d t = rotated_along(m, 0.35) * direction;
-  EXPECT_LT((point_at_arc_length(result, 0.35) - middle).norm(), 1e-10);
-  EXPECT_LT((point_at_arc_length(result) - middle - integral(last, 0.65, t)).norm(), 1e-10);
+  EXPECT_LT((test::point_at(result, 0.35) - middle).norm(), 1e-10);
+  EXPECT_LT((test::point_at(result, 1) - middle - integral(last, 0.65, t)).norm(), 1e-10);
   EXPECT_LT((result.grips[0].torque + m).norm(), 1e-9);
 }
 
@@ -261,12 +257,12 @@ TEST(WithoutPotential, LoadsThatFollowInSpaceTwistAndBendEveryRod) {
     const Eigen::Matrix3d clamp = rolled(frame_along(direction, Eigen::Vector3d(1, 0.1, 0.3)), 0.4);
     const TipRod rod{{1, second, 0.6}, Eigen::Vector3d::Zero(), {}};
     EXPECT_LT(
-        (point_at_arc_length(result) - tip_under_follower_load(rod, clamp, force, torque)).norm(),
+        (test::point_at(result, 1) - tip_under_follower_load(rod, clamp, force, torque)).norm(),
         1e-9);
     // The result is found again from itself as the initial guess, with fewer evaluations.
     const Equilibrium again = solve_exact(problem, {.start = &result});
     expect_balance_alone(again);
-    EXPECT_LT((point_at_arc_length(again) - point_at_arc_length(result)).norm(), 1e-9);
+    EXPECT_LT((test::point_at(again, 1) - test::point_at(result, 1)).norm(), 1e-9);
     EXPECT_LT(again.evaluations, result.evaluations);
   }
 }
@@ -284,7 +280,7 @@ TEST(WithoutPotential, DragAlongAndAcrossWithWeightIsThatOfAnIntegrationFromTheT
     const TipRod rod{
         {1, 1, 1}, {0, -4, 0}, [&](const Eigen::Vector3d& t) { return drag.force(t); }};
     const Eigen::Vector3d expected = tip_under_drag(rod, direction, tip_tangent_of(result));
-    EXPECT_LT((point_at_arc_length(result) - expected).norm(), 1e-9);
+    EXPECT_LT((test::point_at(result, 1) - expected).norm(), 1e-9);
   }
 }
 
@@ -299,7 +295,7 @@ TEST(WithoutPotential, DirectorsStayWhereThePlaneWithAllLoadsSays) {
   const TipRod rod{
       {3, 3, 3}, {0, 0, 0}, [&](const Eigen::Vector3d& t) { return problem.drag->force(t); }};
   const Eigen::Vector3d expected = tip_under_drag(rod, {1, 0, 0}, tip_tangent_of(result));
-  EXPECT_LT((point_at_arc_length(result) - expected).norm(), 1e-9);
+  EXPECT_LT((test::point_at(result, 1) - expected).norm(), 1e-9);
 }
 
 TEST(WithoutPotential, ALineOnPinsInACurrentBalances) {
@@ -317,8 +313,8 @@ TEST(WithoutPotential, ALineOnPinsInACurrentBalances) {
     sum += weight / 1200 * problem.drag->force(t.col(i));
   }
   EXPECT_LT((sum + result.grips[0].force + result.grips[1].force).norm(), 1e-8);
-  EXPECT_GT(point_at_arc_length(result, 0.5).z(), 0.05);
-  EXPECT_LT((point_at_arc_length(result) - Eigen::Vector3d(0.8, 0, 0)).norm(), 1e-9);
+  EXPECT_GT(test::point_at(result, 0.5).z(), 0.05);
+  EXPECT_LT((test::point_at(result, 1) - Eigen::Vector3d(0.8, 0, 0)).norm(), 1e-9);
 }
 
 TEST(WithoutPotential, DragThatIsNothingChangesNothing) {
@@ -326,12 +322,12 @@ TEST(WithoutPotential, DragThatIsNothingChangesNothing) {
   Problem still = problem;
   still.drag = Drag{{0, 0, 0}, 1, 1};
   EXPECT_LT(
-      (point_at_arc_length(solve_exact(problem)) - point_at_arc_length(solve_exact(still))).norm(),
+      (test::point_at(solve_exact(problem), 1) - test::point_at(solve_exact(still), 1)).norm(),
       1e-10);
   still.loads = {{1, {0, 0, 0}, {0, 0, 0}, true}};
   still.drag.reset();
   EXPECT_LT(
-      (point_at_arc_length(solve_exact(problem)) - point_at_arc_length(solve_exact(still))).norm(),
+      (test::point_at(solve_exact(problem), 1) - test::point_at(solve_exact(still), 1)).norm(),
       1e-10);
 }
 
