@@ -57,10 +57,10 @@ class Command : public Folder {
     return result;
   }
 
-  /// Returns the standard output of a command, which must succeed.
-  [[nodiscard]] std::string output_of(const std::string& arguments) const {
+  /// Returns the standard output of a command, and expects this exit status.
+  [[nodiscard]] std::string output_of(const std::string& arguments, int status = 0) const {
     const RunResult result = run(arguments);
-    EXPECT_EQ(result.status, 0) << arguments << "\n" << result.err;
+    EXPECT_EQ(result.status, status) << arguments << "\n" << result.err;
     return result.out;
   }
 
@@ -77,9 +77,7 @@ class Command : public Folder {
 
   /// Returns the document that a command prints with --format json, and expects this exit status.
   [[nodiscard]] json json_of(const std::string& arguments, int status = 0) const {
-    const RunResult result = run(arguments + " --format json");
-    EXPECT_EQ(result.status, status) << arguments << "\n" << result.err;
-    return json::parse(result.out);
+    return json::parse(output_of(arguments + " --format json", status));
   }
 
   /// Returns rows x, y, z, s [m] of the shape that `dlo solve` finds with these arguments.
@@ -152,7 +150,27 @@ class Command : public Folder {
     EXPECT_TRUE(has_all(result.err, names));
   }
 
-  static std::string steel() { return std::string(DLO_DATA) + "/scenes/spring_steel_175.toml"; }
+  /// Returns the path of a scene of data/scenes.
+  static std::string shipped_scene(const std::string& name) {
+    return DLO_DATA "/scenes/" + name + ".toml";
+  }
+
+  static std::string steel() { return shipped_scene("spring_steel_175"); }
+};
+
+/// Fixture of commands that run programs in Python.
+class PythonCommand : public Command {
+ protected:
+  void SetUp() override {
+    Command::SetUp();
+    if (run_line("[ -x /usr/bin/python3 ]").status != 0) GTEST_SKIP() << "no python3";
+  }
+
+  /// Returns the option --with that runs a program of the repository under this name.
+  static std::string with_program(const std::string& name, const std::string& program) {
+    return " --with " + name + "='/usr/bin/python3 " DLO_DATA "/../" + program +
+           " {scene} {points} {shape}' ";
+  }
 };
 
 }  // namespace dlo::test

@@ -1,5 +1,7 @@
 #pragma once
 
+#include <cstddef>
+#include <stdexcept>
 #include <string>
 
 #include "../helpers.hpp"
@@ -21,6 +23,14 @@ inline const std::string first_pin = gripper_text("hold = \"pin\"");
 /// Steel wire of half a metre, without grippers.
 inline const std::string steel_rod =
     "[rod]\nlength = \"50 cm\"\ndiameter = \"2 mm\"\nmaterial = \"spring_steel\"\n";
+
+/// Returns the text with the first occurrence of a piece replaced. Throws std::runtime_error if the
+/// text does not have the piece.
+inline std::string replaced(std::string text, const std::string& piece, const std::string& other) {
+  const std::size_t at = text.find(piece);
+  if (at == std::string::npos) throw std::runtime_error("no " + piece + " in " + text);
+  return text.replace(at, piece.size(), other);
+}
 
 /// Returns the message with which a scene's text is refused, or "no error".
 inline std::string scene_error(const std::string& text) {

@@ -2,11 +2,10 @@
 
 #include <gtest/gtest.h>
 
-#include <fstream>
-#include <sstream>
 #include <string>
 #include <vector>
 
+#include "base/input_file.hpp"
 #include "batch/sweep.hpp"
 #include "batch/sweep_grid.hpp"
 #include "csv_table.hpp"
@@ -30,10 +29,7 @@ Sweep shipped_map() {
 
 /// Returns the rows of data/effective_modulus.csv, its header first.
 std::vector<test::CsvRow> map_rows() {
-  std::ifstream stream(std::string(DLO_DATA) + "/effective_modulus.csv");
-  std::ostringstream text;
-  text << stream.rdbuf();
-  return csv_rows(text.str());
+  return csv_rows(read_file(DLO_DATA "/effective_modulus.csv"));
 }
 
 TEST(EffectiveModulusMap, IsWhatItsCommandWrites) {

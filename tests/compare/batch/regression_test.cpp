@@ -14,6 +14,7 @@
 #include "dlo/compare/error.hpp"
 #include "dlo/compare/force_model_settings.hpp"
 #include "dlo/compare/solution.hpp"
+#include "scene_text.hpp"
 #include "scenes.hpp"
 
 namespace dlo::compare {
@@ -58,9 +59,7 @@ TEST(Baseline, MalformedOnesNameFileLineKeyAndWhatIsAllowed) {
     return error_of<InputError>([&] { return read_baseline(text, "b.toml"); });
   };
   const auto changed = [&](const std::string& from, const std::string& to) {
-    std::string text = good;
-    text.replace(text.find(from), from.size(), to);
-    return message(text);
+    return message(replaced(good, from, to));
   };
   const auto expect = [](const std::string& text, const std::vector<std::string>& words) {
     EXPECT_TRUE(has_none(text, {"\n"}));

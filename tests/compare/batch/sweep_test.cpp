@@ -81,10 +81,8 @@ TEST(SweepGrid, RefusesFieldsInsideEachOther) {
 }
 
 TEST(SceneTemplate, GivesTheSceneThatAnEditedFileWouldGive) {
-  std::string edited = sweep_scene;
-  edited.replace(edited.find("50 cm"), 5, "70 cm");
-  edited.replace(edited.find("0 deg"), 5, "30 deg");
-  edited += "[force_model]\npoints = 24\nlaw = \"paper\"\n";
+  const std::string edited = replaced(replaced(sweep_scene, "50 cm", "70 cm"), "0 deg", "30 deg") +
+                             "[force_model]\npoints = 24\nlaw = \"paper\"\n";
   const Scene expected = parse_scene(edited, "swept.toml");
   const Scene scene = SceneTemplate(sweep_scene, "swept.toml")
                           .with({{"rod.length", "70 cm"},
@@ -122,8 +120,8 @@ TEST(SceneTemplate, GammaScalesGravityWhateverElseIsVaried) {
 }
 
 TEST(SceneTemplate, TorsionKeepsItsRatioToBendingUnlessItIsVaried) {
-  std::string text = sweep_scene;
-  text.insert(text.find("[[gripper]]"), "torsional_stiffness = 0.1\n");
+  const std::string text =
+      replaced(sweep_scene, "[[gripper]]", "torsional_stiffness = 0.1\n[[gripper]]");
   const SceneTemplate base(text, "swept.toml");
   const double ratio = 0.1 / base.with({}).bending_stiffness();
   EXPECT_EQ(base.with({}).torsional_stiffness, 0.1);

@@ -40,8 +40,8 @@ TEST_F(CalibrateCommand, NamesWhatSystematicResidualsAskFor) {
   std::vector<std::string> shapes;
   for (const int angle : {-15, 0, 15}) {
     const std::string straight = scene_of(fmt::format("s{}.toml", angle), "5 GPa", angle);
-    std::string bent = read(straight);
-    bent.replace(bent.find("[rod]"), 5, "[rod]\nnatural_curvature = \"0.7 1/m\"");
+    const std::string bent =
+        replaced(read(straight), "[rod]", "[rod]\nnatural_curvature = \"0.7 1/m\"");
     scenes.push_back(straight);
     shapes.push_back(write_exact_shape(scene(bent), fmt::format("s{}.csv", angle)));
   }

@@ -4,8 +4,6 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <fstream>
-#include <iterator>
 #include <nlohmann/json.hpp>
 #include <string>
 #include <vector>
@@ -23,11 +21,6 @@ const std::vector<std::string> models = {"composite.xml", "chain.xml", "hinges.x
                                          "two_constraints.xml", "capsule_caps.xml"};
 
 std::string model(const std::string& name) { return std::string(DLO_DATA) + "/mujoco/" + name; }
-
-std::string model_text(const std::string& name) {
-  std::ifstream stream(model(name));
-  return {std::istreambuf_iterator<char>(stream), {}};
-}
 
 /// Returns the points of the model's segments at rest. The springs are linear in the angle. Half of
 /// the weight of each segment acts at each of its ends, as for a uniform rigid segment. If a clamp
@@ -92,15 +85,13 @@ TEST_F(MjcfCommand, FiveModelsComeToTheirVerdictInOneCommand) {
 
 TEST_F(MjcfCommand, AModelWithAnotherSpringFailsWithTheCause) {
   const std::string points = starts("chain.xml");
-  std::string text = model_text("chain.xml");
+  std::string text = read(model("chain.xml"));
   const std::size_t at = text.find("stiffness=\"");
   const std::size_t end = text.find('"', at + 11);
   text.replace(at, end - at, "stiffness=\"0.96510");  // twice as stiff
-  std::ofstream(path("stiff.xml")) << text;
-  const RunResult result =
-      run(words({"check", path("stiff.xml"), "--shape", points}) + "--tolerance 1%");
-  EXPECT_EQ(result.status, 1);
-  EXPECT_TRUE(has_all(result.out, {"springs of 0.5"}));
+  const std::string stiff = write("stiff.xml", text);
+  EXPECT_TRUE(has_all(output_of(words({"check", stiff, "--shape", points, "--tolerance 1%"}), 1),
+                      {"springs of 0.5"}));
 }
 
 }  // namespace

@@ -51,8 +51,7 @@ TEST_F(Command, ContradictoryGripsNameFileLineAndKeyWithEveryModel) {
 
 TEST_F(Command, RodsBeyondTheLimitsNameFileLineAndKey) {
   const auto rod = [&](const std::string& from, const std::string& to) {
-    std::string text = rod_of;
-    return scene(text.replace(text.find(from), from.size(), to));
+    return scene(replaced(rod_of, from, to));
   };
   expect_error("solve " + rod("\"50 cm\"", "1e5"), 2,
                {"scene.toml:3: rod.length = 100000", "Gamma", "(allowed: 0 to 1e+12)"});
@@ -64,8 +63,7 @@ TEST_F(Command, RodsBeyondTheLimitsNameFileLineAndKey) {
 TEST_F(Command, NumbersThatOverflowInSquaresNameFileLineAndKey) {
   expect_error("solve " + scene(rod_of + "[[load]]\nat = 0.5\nmass = 1e200\n"), 2,
                {"scene.toml:12: load.mass = 1e+200: out of range", "up to 1e+30"});
-  std::string curved = rod_of;
-  curved.replace(curved.find("[rod]\n"), 6, "[rod]\nnatural_curvature = -1e10\n");
+  const std::string curved = replaced(rod_of, "[rod]\n", "[rod]\nnatural_curvature = -1e10\n");
   expect_error("solve " + scene(curved), 2,
                {"scene.toml:3: rod.natural_curvature = -10000000000: out of range", "up to 1e+09"});
 }
@@ -85,9 +83,7 @@ TEST_F(Command, AModelThatDoesNotTakeASceneSaysWhichDoes) {
                                  "0]\nradius = 0.1\nstiffness = 100\n");
   expect_error("solve " + ball + " --model exact", 2,
                {"scene.toml", "obstacle", "--model energy, chain or force"});
-  std::string soft = rod_of;
-  soft.replace(soft.find("\"50 cm\""), 7, "1000");
-  const std::string file = scene(soft);
+  const std::string file = scene(replaced(rod_of, "\"50 cm\"", "1000"));
   expect_error("solve " + file + " --model exact", 2,
                {"scene.toml: rod: model exact", "must be <= 1e6"});
   EXPECT_TRUE(has_none(run("solve " + file + " --model exact").err, {"solve_exact"}));

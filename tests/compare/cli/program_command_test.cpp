@@ -15,17 +15,12 @@ namespace {
 
 using testing::HasSubstr;
 
-class ProgramCommand : public Command {
+class ProgramCommand : public PythonCommand {
  protected:
   static std::string cable() { return std::string(DLO_DATA) + "/scenes/cable.toml"; }
   /// Returns the option --with that runs the example, a chain of hinges, under this name.
   static std::string hinges(const std::string& name) {
-    return " --with " + name + "='/usr/bin/python3 " + DLO_DATA +
-           "/../compare/example/foreign/hinges.py {scene} {points} {shape}' ";
-  }
-  void SetUp() override {
-    Command::SetUp();
-    if (run_line("[ -x /usr/bin/python3 ]").status != 0) GTEST_SKIP() << "no python3";
+    return with_program(name, "compare/example/foreign/hinges.py");
   }
 };
 

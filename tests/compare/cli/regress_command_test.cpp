@@ -105,15 +105,11 @@ TEST_F(RegressCommand, UpdateSaysWhatItDid) {
 
 TEST_F(RegressCommand, AWorseErrorFailsAndABetterOneIsReported) {
   set("rms_over_length", "0.2");
-  RunResult result = run(arguments_ + steel());
-  EXPECT_EQ(result.status, 1);
-  EXPECT_TRUE(has_all(result.out, {"(baseline 20 %) worse"}));
+  EXPECT_TRUE(has_all(output_of(arguments_ + steel(), 1), {"(baseline 20 %) worse"}));
   succeeds(arguments_ + steel() + " --relative 0.1");
   succeeds(arguments_ + steel() + " --absolute 0.02");
   set("rms_over_length", "0.3");
-  result = run(arguments_ + steel());
-  EXPECT_EQ(result.status, 0);
-  EXPECT_TRUE(has_all(result.out, {"1 better"}));
+  EXPECT_TRUE(has_all(output_of(arguments_ + steel()), {"1 better"}));
 }
 
 TEST_F(RegressCommand, AMissingBaselineOrCaseOnEitherSideFails) {
@@ -121,24 +117,18 @@ TEST_F(RegressCommand, AMissingBaselineOrCaseOnEitherSideFails) {
       "regress --baseline " + path("none.toml") + " " + steel(), 2,
       {"none.toml: cannot be read (No such file or directory); --update writes a first baseline"});
   expect_output(arguments_ + steel() + " " + other, 1, {"1 not in the baseline"});
-  const RunResult changed = run(arguments_ + steel() + " --points 20");
-  EXPECT_EQ(changed.status, 1);
-  EXPECT_TRUE(has_all(changed.out, {"N = 20 (baseline N = 16): RMS", "\n1 changed\n"}));
+  EXPECT_TRUE(has_all(output_of(arguments_ + steel() + " --points 20", 1),
+                      {"N = 20 (baseline N = 16): RMS", "\n1 changed\n"}));
 }
 
 TEST_F(RegressCommand, AnotherSceneOfTheSameNameIsChanged) {
-  std::string text = read(steel());
-  ASSERT_TRUE(has_all(text, {"\n[rod]"}));
-  text.replace(text.find("\n[rod]"), 6, "\n[[load]]\nat = 0.5\nforce = [0, 1e-9, 0]\n[rod]");
-  const RunResult result = run(arguments_ + scene(text));
-  EXPECT_EQ(result.status, 1) << result.err;
-  EXPECT_EQ(result.out.substr(0, 8), "changed ") << result.out;
-  EXPECT_TRUE(has_all(result.out, {"another than the baseline's: RMS"}));
+  const std::string loaded =
+      replaced(read(steel()), "\n[rod]", "\n[[load]]\nat = 0.5\nforce = [0, 1e-9, 0]\n[rod]");
+  const std::string out = output_of(arguments_ + scene(loaded), 1);
+  EXPECT_TRUE(out.starts_with("changed ")) << out;
+  EXPECT_TRUE(has_all(out, {"another than the baseline's: RMS"}));
   // A scene does not change if its length is written in another unit.
-  std::string same = read(steel());
-  ASSERT_TRUE(has_all(same, {"\"50 cm\""}));
-  same.replace(same.find("\"50 cm\""), 7, "0.5");
-  succeeds(arguments_ + scene(same));
+  succeeds(arguments_ + scene(replaced(read(steel()), "\"50 cm\"", "0.5")));
 }
 
 TEST_F(RegressCommand, TakesPercentAndSharesAlikeAndOnePercentByDefault) {

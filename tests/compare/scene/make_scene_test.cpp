@@ -9,6 +9,7 @@
 
 #include "../../says.hpp"
 #include "dlo/compare.hpp"
+#include "scene_text.hpp"
 
 namespace dlo::compare {
 namespace {
@@ -101,8 +102,7 @@ TEST(MakeScene, RefusesWhatAFileMayNotSayInTheSameWords) {
       {{"gripper.1.hold", "glue"}, "hold = \"pin\"", "hold = \"glue\""},
       {{"gripper.0.position", {0, 0}}, "position = [0, \"5 cm\", 0]", "position = [0, 0]"}};
   for (const auto& [field, said, meant] : all) {
-    std::string wrong = text;
-    wrong.replace(wrong.find(said), said.size(), meant);
+    const std::string wrong = replaced(text, said, meant);
     std::vector<SceneField> made = fields;
     made.push_back(field);
     const std::string file_refusal =

@@ -5,17 +5,17 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <fstream>
-#include <iterator>
 #include <numbers>
 #include <string>
 #include <vector>
 
 #include "../../says.hpp"
+#include "base/input_file.hpp"
 #include "dlo/compare/error.hpp"
 #include "dlo/compare/scene_file.hpp"
 #include "dlo/compare/shape_file.hpp"
 #include "explain/segment_starts.hpp"
+#include "scene_text.hpp"
 #include "scenes.hpp"
 
 namespace dlo::compare {
@@ -25,18 +25,7 @@ using std::numbers::pi;
 
 Scene mjcf_model(const std::string& name) { return load_scene(DLO_DATA "/mujoco/" + name); }
 
-std::string mjcf_text(const std::string& name) {
-  std::ifstream stream(DLO_DATA "/mujoco/" + name);
-  return {std::istreambuf_iterator<char>(stream), {}};
-}
-
-/// Returns the text with the first occurrence of a piece, which must exist, replaced.
-std::string changed(std::string text, const std::string& piece, const std::string& other) {
-  const std::size_t at = text.find(piece);
-  EXPECT_NE(at, std::string::npos) << piece;
-  if (at != std::string::npos) text.replace(at, piece.size(), other);
-  return text;
-}
+std::string mjcf_text(const std::string& name) { return read_file(DLO_DATA "/mujoco/" + name); }
 
 /// Compares with the accuracy to which files are rounded.
 void expect_near(double value, double expected) {
@@ -106,8 +95,8 @@ TEST(Mjcf, ConstraintsAreGrippers) {
   expect_near(pin.position.x(), 0.405094);
   EXPECT_FALSE(scene.naturally_bent());  // flat
   const Scene curved =
-      parse_scene(changed(mjcf_text("two_constraints.xml"), "\"true\"/>\n      </instance>",
-                          "\"false\"/></instance>"),
+      parse_scene(replaced(mjcf_text("two_constraints.xml"), "\"true\"/>\n      </instance>",
+                           "\"false\"/></instance>"),
                   "curved.xml");
   // An arc of 2.2 rad.
   EXPECT_NEAR(curved.natural_curvature().norm(), 2.2 / curved.length, 0.02 * 2.2);
@@ -118,8 +107,8 @@ TEST(Mjcf, AWeldIsWhereItsRelposePutsTheBody) {
   // The hand is in the first body's frame at x = 0.1, turned by 90 degrees about z: that body's x
   // is the hand's -y, so that it is at (0, 0.1, 0) in the world, and points to -y.
   const Scene scene =
-      parse_scene(changed(mjcf_text("two_constraints.xml"), weld,
-                          "<weld body1=\"B_first\" body2=\"hand\" relpose=\"0.1 0 0 1 0 0 1\"/>"),
+      parse_scene(replaced(mjcf_text("two_constraints.xml"), weld,
+                           "<weld body1=\"B_first\" body2=\"hand\" relpose=\"0.1 0 0 1 0 0 1\"/>"),
                   "moved.xml");
   EXPECT_LT((scene.grippers.at(0).position - Eigen::Vector3d(0, 0.1, 0)).norm(), 1e-9);
   EXPECT_LT((*scene.grippers[0].direction - Eigen::Vector3d(0, -1, 0)).norm(), 1e-9);
@@ -186,7 +175,7 @@ TEST(Mjcf, WhatARodCannotSayIsNamed) {
       {"two_constraints.xml", "site2=\"hook\"", "site2=\"S_first\"", {"with itself"}},
   };
   for (const Refused& bad : cases) {
-    const std::string text = changed(mjcf_text(bad.file), bad.piece, bad.other);
+    const std::string text = replaced(mjcf_text(bad.file), bad.piece, bad.other);
     const std::string message = error_of<InputError>([&] { return parse_scene(text, "mine.xml"); });
     EXPECT_EQ(message.rfind("mine.xml:", 0), 0U) << message;
     EXPECT_TRUE(has_none(message, {"\n"}));
@@ -195,9 +184,9 @@ TEST(Mjcf, WhatARodCannotSayIsNamed) {
 }
 
 TEST(Mjcf, AllRefusalsOfAFileAreInOneMessage) {
-  std::string text = changed(mjcf_text("chain.xml"), "stiffness=", "stifness=");
-  text = changed(text, "</worldbody>", "</worldbody><tendon/>");
-  text = changed(text, "<mujoco", "<mujoco colour=\"red\"");
+  std::string text = replaced(mjcf_text("chain.xml"), "stiffness=", "stifness=");
+  text = replaced(text, "</worldbody>", "</worldbody><tendon/>");
+  text = replaced(text, "<mujoco", "<mujoco colour=\"red\"");
   const std::string message = error_of<InputError>([&] { return parse_scene(text, "mine.xml"); });
   EXPECT_TRUE(has_all(message, {"mine.xml:4: <joint>", "<tendon>", "<mujoco> colour", "; "}));
   EXPECT_TRUE(has_none(message, {"\n"}));
@@ -206,11 +195,11 @@ TEST(Mjcf, AllRefusalsOfAFileAreInOneMessage) {
 /// Actuators, sensors, sites and bodies without mass have no part in a shape at rest.
 TEST(Mjcf, PartsWithoutEffectAtRestAreIgnoredAndListed) {
   const Scene plain = mjcf_model("chain.xml");
-  std::string text = changed(mjcf_text("chain.xml"), "</worldbody>",
-                             "</worldbody><actuator><motor name=\"m\" joint=\"j\"/></actuator>"
-                             "<sensor><jointpos joint=\"j\"/><jointvel joint=\"j\"/></sensor>");
-  text =
-      changed(text, "<joint/><geom/>", "<joint/><geom/><site name=\"mark\"/><body name=\"spot\"/>");
+  std::string text = replaced(mjcf_text("chain.xml"), "</worldbody>",
+                              "</worldbody><actuator><motor name=\"m\" joint=\"j\"/></actuator>"
+                              "<sensor><jointpos joint=\"j\"/><jointvel joint=\"j\"/></sensor>");
+  text = replaced(text, "<joint/><geom/>",
+                  "<joint/><geom/><site name=\"mark\"/><body name=\"spot\"/>");
   const Scene scene = parse_scene(text, "mine.xml");
   EXPECT_EQ(scene.bending_stiffness(), plain.bending_stiffness());
   EXPECT_EQ(scene.mass(), plain.mass());
@@ -224,8 +213,8 @@ TEST(Mjcf, PartsWithoutEffectAtRestAreIgnoredAndListed) {
 TEST(Mjcf, SlideAndFreeJointsOfTheBaseAreIgnored) {
   for (const char* joint : {"<freejoint/>", "<joint type=\"slide\" axis=\"1 0 0\"/>"}) {
     const Scene scene =
-        parse_scene(changed(mjcf_text("capsule_caps.xml"), "<body name=\"b0\" pos=\"0 0 0.6\">",
-                            std::string("<body name=\"b0\" pos=\"0 0 0.6\">") + joint),
+        parse_scene(replaced(mjcf_text("capsule_caps.xml"), "<body name=\"b0\" pos=\"0 0 0.6\">",
+                             std::string("<body name=\"b0\" pos=\"0 0 0.6\">") + joint),
                     "mine.xml");
     const Scene fixed = mjcf_model("capsule_caps.xml");
     ASSERT_EQ(scene.grippers.size(), 1U);
@@ -240,14 +229,14 @@ TEST(Mjcf, ACableThatIsNotUniformHasSections) {
   const Scene plain = mjcf_model("chain.xml");
   const double h = plain.length / 20;
   std::string text =
-      changed(mjcf_text("chain.xml"), "<joint/><geom/>", "<joint stiffness=\"9\"/><geom/>");
+      replaced(mjcf_text("chain.xml"), "<joint/><geom/>", "<joint stiffness=\"9\"/><geom/>");
   const Scene stiff = parse_scene(text, "mine.xml");
   ASSERT_EQ(stiff.sections.size(), 2U);
   EXPECT_NEAR(stiff.sections[0].to, 1.5 * h, 1e-12);
   expect_near(stiff.sections[0].bending_stiffness, 9 * h);
   expect_near(stiff.sections[1].bending_stiffness, plain.bending_stiffness());
   expect_near(stiff.mass(), plain.mass());
-  text = changed(mjcf_text("chain.xml"), "<joint/><geom/>", "<joint/><geom mass=\"7\"/>");
+  text = replaced(mjcf_text("chain.xml"), "<joint/><geom/>", "<joint/><geom mass=\"7\"/>");
   const Scene heavy = parse_scene(text, "mine.xml");
   ASSERT_EQ(heavy.sections.size(), 3U);
   EXPECT_NEAR(heavy.sections[1].from, h, 1e-12);

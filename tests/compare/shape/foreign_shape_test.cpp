@@ -3,12 +3,11 @@
 #include <gtest/gtest.h>
 
 #include <filesystem>
-#include <fstream>
-#include <iterator>
 #include <string>
 #include <vector>
 
 #include "../../says.hpp"
+#include "base/input_file.hpp"
 #include "dlo/compare/error.hpp"
 #include "dlo/compare/shape_file.hpp"
 #include "trajectory/read_trajectory.hpp"
@@ -95,8 +94,7 @@ TEST(ForeignShape, ArchivesAndXmlNameThePageThatConvertsThem) {
 
 TEST(ForeignShape, ACutArrayIsRefusedWhereverItIsCut) {
   const std::string name = "f8.npy";
-  std::ifstream stream(corpus + name, std::ios::binary);
-  const std::string whole{std::istreambuf_iterator<char>(stream), {}};
+  const std::string whole = read_file(corpus + name);
   for (std::size_t length = 1; length < whole.size(); ++length) {
     EXPECT_THROW((void)parse_shape(whole.substr(0, length), name), InputError)
         << "cut at " << length;

@@ -15,6 +15,7 @@
 #include "suite/answer.hpp"
 #include "suite/battery.hpp"
 #include "suite/cause.hpp"
+#include "suite/committed_answer.hpp"
 #include "suite/pack.hpp"
 
 namespace dlo::compare {
@@ -26,17 +27,8 @@ BatteryScene moving_scene(const std::string& id) {
   return chosen_scenes(builtin_battery(), {id}).front();
 }
 
-json committed_motion(const std::string& id) {
-  std::ifstream stream(DLO_DATA "/suite/answers/" + id + ".json");
-  return json::parse(stream);
-}
-
-Eigen::Vector3d point_of(const json& value) {
-  return {value[0].get<double>(), value[1].get<double>(), value[2].get<double>()};
-}
-
 TEST(MotionAnswers, CommittedOnesAreThoseOfFreshOnesWithinTheirBounds) {
-  const json before = committed_motion("motion_release");
+  const json before = committed_answer("motion_release");
   const json now = motion_json(certified_motion(moving_scene("motion_release")));
   ASSERT_EQ(before["times_s"], now["times_s"]);
   ASSERT_EQ(before["methods"], now["methods"]);
@@ -44,7 +36,7 @@ TEST(MotionAnswers, CommittedOnesAreThoseOfFreshOnesWithinTheirBounds) {
   EXPECT_LT(bound, 2e-4 * moving_scene("motion_release").scene.length);
   for (std::size_t k = 0; k < now["frames_m"].size(); ++k) {
     for (std::size_t i = 0; i < now["frames_m"][k].size(); ++i) {
-      ASSERT_LT((point_of(before["frames_m"][k][i]) - point_of(now["frames_m"][k][i])).norm(),
+      ASSERT_LT((vector_of(before["frames_m"][k][i]) - vector_of(now["frames_m"][k][i])).norm(),
                 bound);
     }
   }
@@ -52,14 +44,14 @@ TEST(MotionAnswers, CommittedOnesAreThoseOfFreshOnesWithinTheirBounds) {
 
 // w at the tip is a cos(omega t), up to nonlinear terms at a = 0.01 l.
 TEST(MotionAnswers, TheVibrationHasTheFrequencyOfItsClosedForm) {
-  const json answer = committed_motion("motion_vibration");
+  const json answer = committed_answer("motion_vibration");
   constexpr double lambda = 1.8751040687119611;
   const double l = 0.4;
   const double omega = lambda * lambda * std::sqrt(0.01 / 0.02) / (l * l);
   EXPECT_LT(answer["points_bound_m"], 1e-6 * l);
   for (std::size_t k = 0; k < answer["times_s"].size(); ++k) {
     const double time = answer["times_s"][k];
-    EXPECT_NEAR(point_of(answer["frames_m"][k].back()).y(), 0.01 * l * std::cos(omega * time),
+    EXPECT_NEAR(vector_of(answer["frames_m"][k].back()).y(), 0.01 * l * std::cos(omega * time),
                 2e-3 * 0.01 * l);
   }
 }
@@ -99,18 +91,13 @@ TEST(MotionCauses, NameWhatIsWrongAndNothingElse) {
   EXPECT_TRUE(motion_causes(reference, recorded(reference, 1, 0, 0)).empty());
 }
 
-class MotionSuite : public Command {
+class MotionSuite : public PythonCommand {
  protected:
-  void SetUp() override {
-    Command::SetUp();
-    if (run_line("[ -x /usr/bin/python3 ]").status != 0) GTEST_SKIP() << "no python3";
-  }
   /// Returns the entry of the scene motion_vibration in the card of mover.py with this defect.
   [[nodiscard]] json scene_card(const std::string& defect, const std::string& more = "",
                                 int status = 0) const {
-    return json_of("suite --points 6 --scenes motion_vibration --with mover='/usr/bin/python3 " +
-                       std::string(DLO_DATA) + "/../tests/compare/suite/mover.py " + defect +
-                       " {scene} {points} {shape}'" + more,
+    return json_of("suite --points 6 --scenes motion_vibration" +
+                       with_program("mover", "tests/compare/suite/mover.py " + defect) + more,
                    status)
         .at("cards")
         .at(0)

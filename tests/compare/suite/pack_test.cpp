@@ -5,39 +5,23 @@
 #include <gtest/gtest.h>
 
 #include <filesystem>
-#include <fstream>
 #include <iterator>
 #include <nlohmann/json.hpp>
 #include <sstream>
 #include <string>
 #include <vector>
 
+#include "base/input_file.hpp"
 #include "dlo/compare/shape.hpp"
 #include "dlo/compare/shape_file.hpp"
 #include "dlo/compare/solve.hpp"
 #include "format/scene_document.hpp"
 #include "suite/answer.hpp"
 #include "suite/battery.hpp"
+#include "suite/committed_answer.hpp"
 
 namespace dlo::compare {
 namespace {
-
-using nlohmann::json;
-
-std::string text_of(const std::filesystem::path& file) {
-  std::ifstream stream(file);
-  std::ostringstream text;
-  text << stream.rdbuf();
-  return text.str();
-}
-
-json reference_answer(const std::string& id) {
-  return json::parse(text_of(DLO_DATA "/suite/answers/" + id + ".json"));
-}
-
-Eigen::Vector3d vector_of(const json& value) {
-  return {value[0].get<double>(), value[1].get<double>(), value[2].get<double>()};
-}
 
 TEST(Battery, IsTheOneOfItsFile) {
   const Battery read = load_battery(DLO_DATA "/suite/suite.toml");
@@ -67,7 +51,7 @@ TEST(Pack, CommittedAnswersAreThoseOfFreshOnesWithinTheirBounds) {
                                          "floor",         "peg",           "stretch_pins"};
   for (const BatteryScene& scene : chosen_scenes(builtin_battery(), some)) {
     const Answer answer = certified_answer(scene);
-    const json before = reference_answer(scene.id);
+    const json before = committed_answer(scene.id);
     const json now = answer_json(answer);
     EXPECT_EQ(before["methods"], now["methods"]) << scene.id;
     const double length = scene.scene.length;
@@ -124,17 +108,18 @@ TEST(Pack, BoundsHoldTheRoundingOfANumberJustAboveAPowerOfTen) {
 }
 
 TEST(Pack, CommittedOneHasEveryScene) {
-  const json index = json::parse(text_of(DLO_DATA "/suite/answers/suite.json"));
+  const json index = json::parse(read_file(DLO_DATA "/suite/answers/suite.json"));
   EXPECT_EQ(index["version"], builtin_battery().version);
   ASSERT_EQ(index["answers"].size(), builtin_battery().scenes.size());
-  EXPECT_EQ(text_of(DLO_DATA "/suite/answers/schema.json"), text_of(DLO_DATA "/suite/schema.json"));
-  EXPECT_EQ(text_of(DLO_DATA "/suite/answers/motion_schema.json"),
-            text_of(DLO_DATA "/suite/motion_schema.json"));
+  EXPECT_EQ(read_file(DLO_DATA "/suite/answers/schema.json"),
+            read_file(DLO_DATA "/suite/schema.json"));
+  EXPECT_EQ(read_file(DLO_DATA "/suite/answers/motion_schema.json"),
+            read_file(DLO_DATA "/suite/motion_schema.json"));
   std::uintmax_t bytes = 0;
   for (std::size_t i = 0; i < index["answers"].size(); ++i) {
     const BatteryScene& scene = builtin_battery().scenes[i];
     EXPECT_EQ(index["answers"][i]["id"], scene.id);
-    const json answer = reference_answer(scene.id);
+    const json answer = committed_answer(scene.id);
     // The chains with which rods that stretch or move are compared have discretisation errors.
     const bool by_chain = scene.motion || scene.scene.stretch != Stretch::none;
     EXPECT_LT(answer["points_bound_m"], (by_chain ? 2e-4 : 1e-6) * scene.scene.length);
@@ -157,7 +142,7 @@ TEST(Pack, VtuHasThePointsOfTheCsv) {
   for (const BatteryScene& scene : builtin_battery().scenes) {
     if (scene.motion) continue;
     const std::string stem = DLO_DATA "/suite/answers/" + scene.id;
-    const std::string grid = text_of(stem + ".vtu");
+    const std::string grid = read_file(stem + ".vtu");
     const MeasuredShape table = load_shape(stem + ".csv");
     const std::vector<double> points = numbers_after(grid, "NumberOfComponents");
     ASSERT_EQ(points.size(), static_cast<std::size_t>(table.points.size())) << scene.id;
@@ -178,7 +163,7 @@ TEST(Pack, IsTheSameWithOneThreadAndTwo) {
   }
   int files = 0;
   for (const auto& file : std::filesystem::directory_iterator(folder / "1")) {
-    EXPECT_EQ(text_of(file.path()), text_of(folder / "2" / file.path().filename()));
+    EXPECT_EQ(read_file(file.path()), read_file(folder / "2" / file.path().filename()));
     ++files;
   }
   EXPECT_EQ(files, static_cast<int>(3 * scenes.size()) + 3);

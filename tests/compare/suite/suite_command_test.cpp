@@ -23,16 +23,11 @@ namespace {
 
 using testing::HasSubstr;
 
-class SuiteCommand : public Command {
+class SuiteCommand : public PythonCommand {
  protected:
   /// Returns the option --with that runs simulator.py with this defect.
   static std::string simulator_with_defect(const std::string& defect) {
-    return " --with " + defect + "='/usr/bin/python3 " + DLO_DATA +
-           "/../tests/compare/suite/simulator.py " + defect + " {scene} {points} {shape}'";
-  }
-  void SetUp() override {
-    Command::SetUp();
-    if (run_line("[ -x /usr/bin/python3 ]").status != 0) GTEST_SKIP() << "no python3";
+    return with_program(defect, "tests/compare/suite/simulator.py " + defect);
   }
   [[nodiscard]] json card_of(const std::string& arguments) const {
     return json_of("suite " + arguments).at("cards").at(0);
@@ -133,12 +128,10 @@ TEST_F(SuiteCommand, IsTheSameWithOneJobAndTwo) {
 
 TEST_F(SuiteCommand, AFailureIsNoMissingSupport) {
   // A simulator that ends with an error, crashes, hangs or cannot be started.
-  const std::string suite = "suite --scenes weight_1 --format json --time-limit 0.2 --with mine=";
+  const std::string suite = "suite --scenes weight_1 --time-limit 0.2 --with mine=";
   for (const char* program : {"'sh -c \"exit 2\" {shape}'", "'sh -c \"kill -SEGV \\$\\$\" {shape}'",
                               "'sleep 9 {shape}'", "'/no/such/program {shape}'"}) {
-    const RunResult outcome = run(suite + program);
-    EXPECT_EQ(outcome.status, 3) << program << outcome.err;
-    EXPECT_EQ(json::parse(outcome.out).at("cards").at(0).at("total").at("failed"), 1) << program;
+    EXPECT_EQ(json_of(suite + program, 3).at("cards").at(0).at("total").at("failed"), 1) << program;
   }
   const json quiet =
       card_of(" --scenes weight_1 --with mine='sh -c \"echo not supported: weight >&2\" {shape}'");
@@ -191,10 +184,8 @@ TEST_F(SuiteCommand, AReferenceThatDoesNotConvergeIsAnEntry) {
       << "schema = \"dlo/suite/1\"\nversion = \"1\"\n"
          "[[scene]]\nfile = \"good.toml\"\nclass = \"a|b\"\nisolates = \"x\"\n"
          "[[scene]]\nfile = \"bad.toml\"\nclass = \"a|b\"\nisolates = \"x\"\n";
-  const RunResult outcome = run("suite --with chain --battery " + path("battery.toml") +
-                                " --format json --markdown " + path("card.md"));
-  EXPECT_EQ(outcome.status, 3) << outcome.err;
-  const json card = json::parse(outcome.out).at("cards").at(0);
+  const std::string suite = "suite --with chain --battery " + path("battery.toml");
+  const json card = json_of(suite + " --markdown " + path("card.md"), 3).at("cards").at(0);
   EXPECT_EQ(card.at("total").at("right"), 1);
   EXPECT_EQ(card.at("total").at("not_judged"), 1);
   EXPECT_EQ(card.at("scenes").at(1).at("status"), "not judged");

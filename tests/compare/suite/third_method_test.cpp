@@ -14,11 +14,10 @@
 #include "dlo/compare/chain.hpp"
 #include "dlo/compare/shape.hpp"
 #include "suite/battery.hpp"
+#include "suite/committed_answer.hpp"
 
 namespace dlo::compare {
 namespace {
-
-using nlohmann::json;
 
 /// Interpolates between the chain's own points by Lagrange's polynomial through the six nearest,
 /// with an error far below that of the chain.
@@ -98,15 +97,12 @@ class ThirdMethod : public testing::TestWithParam<Row> {};
 
 TEST_P(ThirdMethod, IsWithinTheBoundOfTheAnswerAndItsOwnError) {
   const BatteryScene scene = chosen_scenes(builtin_battery(), {GetParam().id}).front();
-  std::ifstream stream(std::string(DLO_DATA "/suite/answers/") + GetParam().id + ".json");
-  const json answer = json::parse(stream);
+  const json answer = committed_answer(GetParam().id);
   const auto s = answer["arc_length_m"].get<std::vector<double>>();
   const Extrapolation third = extrapolate_chains(scene.scene, s);
   double most = 0;
   for (std::size_t i = 0; i < s.size(); ++i) {
-    const json& point = answer["points_m"][i];
-    const Eigen::Vector3d known(point[0].get<double>(), point[1].get<double>(),
-                                point[2].get<double>());
+    const Eigen::Vector3d known = vector_of(answer["points_m"][i]);
     most = std::max(most, (third.points.col(static_cast<Eigen::Index>(i)) - known).norm());
   }
   const double length = scene.scene.length;
