@@ -27,6 +27,12 @@ inline compare::Scene heavy_scene(double gamma, double degrees) {
   return scene;
 }
 
+/// Returns a scene with Young's modulus multiplied by a factor.
+inline compare::Scene with_modulus_times(double factor, compare::Scene scene) {
+  scene.material.youngs_modulus *= factor;
+  return scene;
+}
+
 /// Returns heavy_scene(gamma, 0) with a second clamp at the rod's end.
 inline compare::Scene two_clamps(double gamma, const Eigen::Vector3d& end,
                                  const Eigen::Vector3d& direction = Eigen::Vector3d::UnitX()) {

@@ -161,7 +161,7 @@ TEST_F(CalibrateCommand, CsvIsATableAndTomlHasRemarks) {
 
 // Shapes of a light wire determine GJ / EI, but neither of the two.
 TEST_F(CalibrateCommand, TellsHowStiffAWireIsAgainstTwist) {
-  const std::string scene = std::string(DLO_DATA) + "/scenes/twisted_wire.toml";
+  const std::string scene = shipped_scene("twisted_wire");
   const std::string shape = path("seen.csv");
   succeeds(words({"solve", scene, "--samples 20 --format csv -o", shape}));
   const std::string fit =

@@ -10,9 +10,8 @@
 namespace dlo::compare {
 namespace {
 
-class ModesCommand : public Command {
- protected:
-  static std::string cable() { return std::string(DLO_DATA) + "/scenes/cable.toml"; }
+struct ModesCommand : Command {
+  static std::string cable() { return shipped_scene("cable"); }
 };
 
 TEST_F(ModesCommand, TellsFrequencies) {

@@ -17,7 +17,7 @@ using testing::HasSubstr;
 
 class ProgramCommand : public PythonCommand {
  protected:
-  static std::string cable() { return std::string(DLO_DATA) + "/scenes/cable.toml"; }
+  static std::string cable() { return shipped_scene("cable"); }
   /// Returns the option --with that runs the example, a chain of hinges, under this name.
   static std::string hinges(const std::string& name) {
     return with_program(name, "compare/example/foreign/hinges.py");

@@ -39,7 +39,7 @@ class RegressCommand : public Command {
   }
 
   std::string arguments_;
-  const std::string other = std::string(DLO_DATA) + "/scenes/spring_steel_135.toml";
+  const std::string other = shipped_scene("spring_steel_135");
 };
 
 TEST_F(RegressCommand, MayTolerateAShareOfTheDeflection) {

@@ -15,7 +15,7 @@ namespace {
 
 class RodCommand : public Command {
  protected:
-  static std::string hose() { return std::string(DLO_DATA) + "/scenes/spring_hose.toml"; }
+  static std::string hose() { return shipped_scene("spring_hose"); }
 
   /// Writes the scene of a rod that is given by EI and mass per length, and returns its path.
   std::string by_stiffness(const std::string& EI) {

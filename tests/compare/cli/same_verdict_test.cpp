@@ -54,7 +54,7 @@ TEST_F(SameVerdict, OfFiftyShapesFromCommandLibraryAndMatchers) {
   const auto scenes = static_cast<std::size_t>(draws(static_cast<int>(names.size())));
   for (std::size_t k = 0; k < scenes; ++k) {
     const char* name = names[k];
-    const std::string file = std::string(DLO_DATA) + "/scenes/" + name + ".toml";
+    const std::string file = shipped_scene(name);
     const Scene scene = compare::load_scene(file);
     for (int kind = 0; kind < 5; ++kind) {
       const Shape shape = shape_of_kind(scene, kind, random);
@@ -99,7 +99,7 @@ json without_tolerance_fields(json document) {
 // The search for causes does not change the verdict. Neither the search nor the tolerance changes
 // the fields that do not depend on the tolerance.
 TEST_F(SameVerdict, HasTheSameNumbersWhateverIsAllowed) {
-  const std::string file = std::string(DLO_DATA) + "/scenes/spring_steel_175.toml";
+  const std::string file = shipped_scene("spring_steel_175");
   const Scene scene = compare::load_scene(file);
   std::mt19937 random(51);
   for (int kind = 0; kind < 5; ++kind) {

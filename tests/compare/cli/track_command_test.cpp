@@ -14,9 +14,8 @@
 namespace dlo::compare {
 namespace {
 
-class TrackCommand : public Command {
- protected:
-  static std::string wire() { return std::string(DLO_DATA) + "/scenes/buckling_wire.toml"; }
+struct TrackCommand : Command {
+  static std::string wire() { return shipped_scene("buckling_wire"); }
 };
 
 TEST_F(TrackCommand, TellsFramesAndEventsInEveryFormat) {
@@ -123,17 +122,16 @@ TEST_F(TrackCommand, OtherCommandsTakeTheSceneAtATime) {
   };
   EXPECT_LT(std::abs(force("--time 0")), 1e-12);
   EXPECT_GT(force("--time 1"), 0.05);
-  expect_error(words({"solve", std::string(DLO_DATA) + "/scenes/cable.toml", "--time 1"}), 2,
+  expect_error(words({"solve", shipped_scene("cable"), "--time 1"}), 2,
                {"--time 1", "nothing moves"});
-  expect_error(words({"track", std::string(DLO_DATA) + "/scenes/swung_rod.toml",
+  expect_error(words({"track", shipped_scene("swung_rod"),
                       "--no-force --frame-rate 100000 --samples 10000"}),
                2, {"10000 samples", "4e+06 points in all"});
-  expect_error(words({"track", std::string(DLO_DATA) + "/scenes/cable.toml"}), 2,
-               {"nothing moves", "[[gripper.pose]]"});
+  expect_error(words({"track", shipped_scene("cable")}), 2, {"nothing moves", "[[gripper.pose]]"});
 }
 
 TEST_F(TrackCommand, HasTheMovingRodInEveryFormat) {
-  const std::string file = std::string(DLO_DATA) + "/scenes/swung_rod.toml";
+  const std::string file = shipped_scene("swung_rod");
   const std::string track =
       words({"track", file, "--to 0.2 --frame-rate 50 --dynamic --drag 0.02"});
   const std::string with_force = track + " --step-rate 3000";
@@ -173,7 +171,7 @@ TEST_F(TrackCommand, HasForcesOfObstaclesAtRestAndMoving) {
 }
 
 TEST_F(TrackCommand, WritesTheMovingRodForParaView) {
-  const std::string swung = std::string(DLO_DATA) + "/scenes/swung_rod.toml";
+  const std::string swung = shipped_scene("swung_rod");
   const std::string file = path("rod.vtk.series");
   const json document =
       json_of(words({"track", swung, "--frame-rate 10 --to 0.2 --no-force --dynamic",
@@ -196,7 +194,7 @@ TEST_F(TrackCommand, WritesTheMovingRodForParaView) {
 }
 
 TEST_F(TrackCommand, SaysWhatAMovingRodCannotHave) {
-  const std::string swung = std::string(DLO_DATA) + "/scenes/swung_rod.toml";
+  const std::string swung = shipped_scene("swung_rod");
   const std::string curved = scene(
       "[rod]\nlength = 1\nbending_stiffness = 1\nmass_per_length = 1\nnatural_curvature = 1\n"
       "[[gripper]]\nat = 0\nroll = 0\n"

@@ -14,10 +14,8 @@ namespace {
 
 using std::numbers::pi;
 
-/// Fixture with the scene twisted_wire.toml of data/scenes.
-class TwistCommand : public Command {
- protected:
-  static std::string wire() { return std::string(DLO_DATA) + "/scenes/twisted_wire.toml"; }
+struct TwistCommand : Command {
+  static std::string wire() { return shipped_scene("twisted_wire"); }
 };
 
 TEST_F(TwistCommand, ModelsThatHaveNoTwistSaySo) {

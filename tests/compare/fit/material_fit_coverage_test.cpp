@@ -63,8 +63,7 @@ TEST_P(MaterialFitCoverage, IntervalHoldsTheTruthInNineOfTenDraws) {
   const bool known = freedom == PoseFreedom::known;
   const Scene truth = heavy_scene(gamma, 15);
 
-  Scene scene = truth;
-  scene.material.youngs_modulus *= 1.7;
+  Scene scene = with_modulus_times(1.7, truth);
   const energy_model::Equilibrium exact = solve_reference(truth, Model::exact);
   std::mt19937 random(2024);
   constexpr int draws = test::sanitized ? 10 : 100;

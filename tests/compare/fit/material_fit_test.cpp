@@ -51,8 +51,7 @@ TEST(MaterialFit, TwoClampsAreFollowedFromOneModulusToTheNext) {
   MeasuredShape shape = test::energy_model_shape(truth, equal_arc_lengths(1, 15));
   shape.arc_length.clear();
   for (const double guess : {0.3, 1.8, 20.0}) {
-    Scene scene = truth;
-    scene.material.youngs_modulus *= guess;
+    Scene scene = with_modulus_times(guess, truth);
     const MaterialFit fit = fit_material({scene}, {shape});
     ASSERT_TRUE(fit.youngs_modulus.value) << fit.not_identified;
     EXPECT_NEAR(*fit.youngs_modulus.value / truth.material.youngs_modulus, 1, 1e-4) << guess;
@@ -71,8 +70,7 @@ TEST(MaterialFit, AHeldRodIsFollowedFromItsOwnPoints) {
                                   [](const auto& state) { return succeeded(state.status); });
   ASSERT_NE(other, states.end());
   const MeasuredShape shape{"seen", other->sample(equal_arc_lengths(1, 21)).points, {}};
-  Scene scene = truth;
-  scene.material.youngs_modulus *= 1.3;
+  Scene scene = with_modulus_times(1.3, truth);
   const MaterialFit fit = fit_material({scene}, {shape});
   ASSERT_TRUE(fit.youngs_modulus.value) << fit.not_identified;
   EXPECT_NEAR(*fit.youngs_modulus.value / truth.material.youngs_modulus, 1, 1e-3);
@@ -90,8 +88,7 @@ TEST(MaterialFit, TheTimeLimitEndsItWithItsName) {
 
 TEST(MaterialFit, APerfectShapeGivesItsModulusFromFarAway) {
   const Scene truth = heavy_scene(5, 0);
-  Scene scene = truth;
-  scene.material.youngs_modulus *= 300;
+  Scene scene = with_modulus_times(300, truth);
   std::mt19937 random(1);
   const MeasuredShape shape = exact_shape(truth, uneven_arc_lengths(random, 9, 1));
   const MeasuredShape moved{"m", random_pose(random).applied(shape.points), {}};
@@ -114,9 +111,8 @@ TEST(MaterialFit, IntervalHasTheWidthOfLinearTheory) {
   const Eigen::Matrix3Xd exact = exact_shape(scene, s).points;
   std::mt19937 random(15);
   const MeasuredShape shape{"seen", with_noise(exact, sigma, random), s};
-  Scene stiffer = scene;
   const double step = 1e-4;
-  stiffer.material.youngs_modulus *= 1 + step;
+  Scene stiffer = with_modulus_times(1 + step, scene);
   const Eigen::Matrix3Xd moved = (exact_shape(stiffer, s).points - exact) / step;
   // Columns: shifts along x, y, z, then turns about y (upright), x and z.
   Eigen::MatrixXd frame(3 * 21, 6);
@@ -239,8 +235,7 @@ TEST(MaterialFit, DensityIsToldByALoadAndNotByGravityAlone) {
 
   const double weight = truth.weight_per_length().norm();
   truth.loads = {{.at = 1, .force = Eigen::Vector3d(0, 2 * weight, 0)}};
-  Scene scene = truth;
-  scene.material.youngs_modulus *= 2;
+  Scene scene = with_modulus_times(2, truth);
   scene.material.density *= 0.6;
   const MaterialFit fit = fit_material({scene}, {measured(truth)}, options);
   ASSERT_TRUE(fit.density && fit.density->value && fit.youngs_modulus.value);

@@ -26,8 +26,7 @@ Shape straight(const Scene& scene) {
 TEST(EffectiveModulus, RecoversTheModulusOfAnEnergyShape) {
   const Scene scene = heavy_scene(2, 15);
   for (const double ratio : {0.03, 0.5, 1.0, 7.0}) {
-    Scene other = scene;
-    other.material.youngs_modulus *= ratio;
+    Scene other = with_modulus_times(ratio, scene);
     const Shape shape = solve(other, Model::exact, {}, equal_arc_lengths(1, 12)).shape;
     const EffectiveModulus fit = fit_effective_modulus(scene, shape);
     EXPECT_NEAR(fit.ratio / ratio, 1, 1e-5);
@@ -57,8 +56,7 @@ TEST(EffectiveModulus, ARodThatHangsStraightHasNone) {
 // 0.48 of the mean square, the RMS decreases by 28 %.
 TEST(EffectiveModulus, IsClearOnlyIfItExplainsTheDeviation) {
   const Scene scene = heavy_scene(2, 15);
-  Scene soft = scene;
-  soft.material.youngs_modulus *= 0.5;
+  Scene soft = with_modulus_times(0.5, scene);
   const Shape shape = solve(soft, Model::exact, {}, equal_arc_lengths(1, 12)).shape;
   const double in_plane = distance_from(shape)(solve_reference(scene, Model::energy));
   for (const auto& [share, optimum] :
@@ -82,8 +80,7 @@ TEST(EffectiveModulus, IsRightToEachPrintedDigit) {
   const EffectiveModulus fit = fit_effective_modulus(scene, shape);
   ASSERT_TRUE(is_identified(fit.optimum));
   const auto square = [&](double log_factor) {
-    Scene at = scene;
-    at.material.youngs_modulus *= fit.ratio * std::exp(log_factor);
+    Scene at = with_modulus_times(fit.ratio * std::exp(log_factor), scene);
     return std::pow(distance_from(shape)(solve_reference(at, Model::exact)), 2);
   };
   constexpr double step = 2e-3;
@@ -97,8 +94,7 @@ TEST(EffectiveModulus, IsRightToEachPrintedDigit) {
 
 TEST(EffectiveModulus, IsFoundBetweenClampsInFewSolves) {
   Scene scene = test::two_clamps(100, {0.7, 0, 0});
-  Scene soft = scene;
-  soft.material.youngs_modulus *= 0.6;
+  Scene soft = with_modulus_times(0.6, scene);
   const Shape shape = solve(soft, Model::energy, {}, equal_arc_lengths(1, 21)).shape;
   const EffectiveModulus fit =
       fit_effective_modulus(scene, distance_from(shape), solve_reference(scene, Model::energy));

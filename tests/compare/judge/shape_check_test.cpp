@@ -49,8 +49,7 @@ TEST(ShapeCheck, AgreesWithCompareOnTheSameShape) {
 
 TEST(ShapeCheck, FindsTheModulusInAnyFrameFromEitherEnd) {
   const Scene scene = heavy_scene(4, 0);
-  Scene soft = scene;
-  soft.material.youngs_modulus *= 0.4;
+  Scene soft = with_modulus_times(0.4, scene);
   std::mt19937 random(11);
   for (const bool backwards : {false, true}) {
     const MeasuredShape truth = exact_shape(soft, test::uneven_arc_lengths(random, 12, 1));
@@ -75,8 +74,7 @@ TEST(ShapeCheck, AFrameByNearestPointsIsNeverWorseThanByLengthsAlongThePoints) {
     const double stiffer = std::array{0.5, 1.5, 3.0}[i / 12 % 3];
     if (test::sanitized && stiffer != 1.5) continue;
     const Scene scene = heavy_scene(rods[i / 36][0], rods[i / 36][1]);
-    Scene other = scene;
-    other.material.youngs_modulus *= stiffer;
+    Scene other = with_modulus_times(stiffer, scene);
     const int count = std::array{9, 20}[i / 6 % 2];
     const Eigen::Matrix3Xd points =
         std::array{0.98, 1.0, 1.03}[i % 3] * exact_shape(other, equal_arc_lengths(1, count)).points;
@@ -135,8 +133,7 @@ TEST(ShapeCheck, ComparesWithTheStateThatTheShapeIsIn) {
   Scene scene = heavy_scene(100, 30);
   scene.grippers.push_back(
       {.at = 1, .position = {0.6, 0, 0}, .direction = Eigen::Vector3d(1, -1, 0).normalized()});
-  Scene soft = scene;
-  soft.material.youngs_modulus *= 0.8;
+  Scene soft = with_modulus_times(0.8, scene);
   MeasuredShape shape = test::energy_model_shape(soft, equal_arc_lengths(1, 31));
   for (const double side : {1, -1}) {
     shape.points.row(2) *= side;

@@ -21,7 +21,7 @@ class Record : public Command {
  protected:
   /// Returns the file of a scene that twists its rod; moving_wire() adds a clamp motion from a
   /// file.
-  static std::string wire() { return std::string(DLO_DATA) + "/scenes/twisted_wire.toml"; }
+  static std::string wire() { return shipped_scene("twisted_wire"); }
   std::string moving_wire() {
     std::ofstream(path("move.csv")) << "time,x,y,z\n0,0.42,0,0\n0.2,0.40,0.01,0\n";
     std::string text = read(wire());
