@@ -8,6 +8,7 @@
 #include <numbers>
 #include <random>
 
+#include "../differences.hpp"
 #include "joint_laws.hpp"
 #include "polygon/polygon_energy.hpp"
 #include "solved.hpp"
@@ -66,16 +67,9 @@ TEST_P(PolygonOfEveryLaw, GradientIsTheDifferenceOfTheEnergy) {
   Eigen::Matrix3Xd gradient(3, 9);
   Eigen::Matrix3Xd unused(3, 9);
   (void)polygon_energy(problem, points, gradient);
-  const double h = 1e-7;
-  for (Eigen::Index i = 0; i < points.size(); ++i) {
-    Eigen::Matrix3Xd above = points;
-    Eigen::Matrix3Xd below = points;
-    above.reshaped()[i] += h;
-    below.reshaped()[i] -= h;
-    const double difference =
-        (polygon_energy(problem, above, unused) - polygon_energy(problem, below, unused)) / (2 * h);
-    EXPECT_NEAR(gradient.reshaped()[i], difference, 1e-6 * gradient.cwiseAbs().maxCoeff()) << i;
-  }
+  const Eigen::Matrix3Xd expected = difference_gradient(
+      [&](const Eigen::Matrix3Xd& p) { return polygon_energy(problem, p, unused); }, points, 1e-7);
+  EXPECT_LT((gradient - expected).cwiseAbs().maxCoeff(), 1e-6 * gradient.cwiseAbs().maxCoeff());
 }
 
 TEST_P(PolygonOfEveryLaw, RestsInFewStepsAndBalancesItsForces) {

@@ -9,6 +9,7 @@
 #include <stdexcept>
 #include <vector>
 
+#include "../differences.hpp"
 #include "dlo/energy_model/energy.hpp"
 #include "dlo/energy_model/polygon.hpp"
 #include "dlo/energy_model/turns.hpp"
@@ -112,23 +113,20 @@ TEST(PolygonTwist, GradientAndHessianAreDifferences) {
   hessian += columns * columns.transpose();
   Eigen::Matrix3Xd gradient(3, points.cols());
   (void)polygon_energy(problem, points, gradient);
-  constexpr double h = 1e-6;
-  // The points of clamped segments are not varied, because their frames would rotate with them.
+  const auto energy_and_gradient = [&](const Eigen::Matrix3Xd& p) {
+    Eigen::Matrix3Xd at(3, p.cols());
+    Eigen::VectorXd result(size + 1);
+    result[size] = polygon_energy(problem, p, at);
+    result.head(size) = at.reshaped();
+    return result;
+  };
+  const Eigen::MatrixXd expected = difference_matrix(energy_and_gradient, points, 1e-6);
+  // The points of clamped segments are left out, because their frames would rotate with them.
   for (const Eigen::Index point : {2, 3, 6}) {
     for (Eigen::Index k = 3 * point; k < 3 * point + 3; ++k) {
-      Eigen::Matrix3Xd ahead = points;
-      Eigen::Matrix3Xd back = points;
-      ahead.reshaped()[k] += h;
-      back.reshaped()[k] -= h;
-      Eigen::Matrix3Xd above(3, points.cols());
-      Eigen::Matrix3Xd below(3, points.cols());
-      const double difference =
-          polygon_energy(problem, ahead, above) - polygon_energy(problem, back, below);
-      EXPECT_NEAR(gradient.reshaped()[k], difference / (2 * h),
-                  1e-7 * gradient.cwiseAbs().maxCoeff());
-      const Eigen::Matrix3Xd column = (above - below) / (2 * h);
+      EXPECT_NEAR(gradient.reshaped()[k], expected(size, k), 1e-7 * gradient.cwiseAbs().maxCoeff());
       for (const Eigen::Index other : {2, 3, 6}) {
-        EXPECT_LT((column.col(other) - hessian.block<3, 1>(3 * other, k)).norm(),
+        EXPECT_LT((expected.block<3, 1>(3 * other, k) - hessian.block<3, 1>(3 * other, k)).norm(),
                   1e-7 * hessian.cwiseAbs().maxCoeff())
             << point << ", " << other;
       }

@@ -3,6 +3,7 @@
 #include <Eigen/Geometry>
 #include <random>
 
+#include "../differences.hpp"
 #include "../helpers.hpp"
 
 namespace dlo::test {
@@ -36,18 +37,8 @@ inline Eigen::Vector3d net_torque(const Eigen::Matrix3Xd& points, const Eigen::M
 
 /// Returns minus the central differences of an energy by the points, with steps of h: its forces.
 template <typename Energy>
-Eigen::Matrix3Xd difference_forces(const Energy& energy, Eigen::Matrix3Xd points, double h) {
-  Eigen::Matrix3Xd forces(3, points.cols());
-  for (Eigen::Index k = 0; k < points.size(); ++k) {
-    const double x = points.data()[k];
-    points.data()[k] = x + h;
-    const double above = energy(points);
-    points.data()[k] = x - h;
-    const double below = energy(points);
-    points.data()[k] = x;
-    forces.data()[k] = -(above - below) / (2 * h);
-  }
-  return forces;
+Eigen::Matrix3Xd difference_forces(const Energy& energy, const Eigen::Matrix3Xd& points, double h) {
+  return -difference_gradient(energy, points, h);
 }
 
 }  // namespace dlo::test

@@ -9,6 +9,7 @@
 #include <string>
 #include <vector>
 
+#include "../differences.hpp"
 #include "polygons.hpp"
 #include "rods.hpp"
 
@@ -16,22 +17,13 @@ namespace dlo::force_model {
 namespace {
 
 /// Minus the derivative of the forces by all points, by central differences.
-Eigen::MatrixXd full_stiffness(const Rod& rod, Eigen::Matrix3Xd points) {
-  const Eigen::Index n = points.size();
-  Eigen::MatrixXd matrix(n, n);
-  Eigen::Matrix3Xd above(3, points.cols());
-  Eigen::Matrix3Xd below(3, points.cols());
-  const double h = 1e-7;
-  for (Eigen::Index k = 0; k < n; ++k) {
-    const double x = points.data()[k];
-    points.data()[k] = x + h;
-    total_forces(rod, points, above);
-    points.data()[k] = x - h;
-    total_forces(rod, points, below);
-    points.data()[k] = x;
-    matrix.col(k) = -(above - below).reshaped() / (2 * h);
-  }
-  return matrix;
+Eigen::MatrixXd full_stiffness(const Rod& rod, const Eigen::Matrix3Xd& points) {
+  Eigen::Matrix3Xd forces(3, points.cols());
+  const auto forces_at = [&](const Eigen::Matrix3Xd& p) {
+    total_forces(rod, p, forces);
+    return Eigen::VectorXd(forces.reshaped());
+  };
+  return -difference_matrix(forces_at, points, 1e-7);
 }
 
 /// Returns the stiffness of the points behind a clamp that holds the first two.

@@ -11,6 +11,7 @@
 #include <stdexcept>
 #include <vector>
 
+#include "../differences.hpp"
 #include "dlo/force_model/batch.hpp"
 #include "dlo/force_model/simulation.hpp"
 #include "dlo/force_model/step_size.hpp"
@@ -150,18 +151,12 @@ TEST(Twist, StepsCountItsStiffness) {
     const Rod rod = twisted.rod();
     const Eigen::Matrix3Xd points = twisted.arch();
     const Eigen::Index free = 3 * (rod.points() - 4);
-    Eigen::MatrixXd K(free, free);
-    Eigen::Matrix3Xd ahead(3, twisted.points);
-    Eigen::Matrix3Xd back = ahead;
-    for (Eigen::Index k = 0; k < free; ++k) {
-      constexpr double h = 1e-6;
-      Eigen::Matrix3Xd moved = points;
-      moved.reshaped()[6 + k] += h;
-      total_forces(rod, moved, ahead);
-      moved.reshaped()[6 + k] -= 2 * h;
-      total_forces(rod, moved, back);
-      K.col(k) = (back - ahead).reshaped().segment(6, free) / (2 * h);
-    }
+    Eigen::Matrix3Xd forces(3, twisted.points);
+    const auto forces_at = [&](const Eigen::Matrix3Xd& p) {
+      total_forces(rod, p, forces);
+      return Eigen::VectorXd(forces.reshaped());
+    };
+    const Eigen::MatrixXd K = -difference_matrix(forces_at, points, 1e-6).block(6, 6, free, free);
     EXPECT_LT((K - K.transpose()).norm(), 1e-6 * K.norm());
     const double fastest =
         Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd>(K).eigenvalues().maxCoeff();
