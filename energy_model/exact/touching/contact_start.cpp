@@ -50,7 +50,7 @@ class Layout {
     for (const RodSpan::Load& load : start_.span.loads) fixed.push_back(load.at);
     for (const RodSpan::Part& part : start_.span.parts) fixed.push_back(part.begin);
     for (const double at : fixed) {
-      if (std::abs(at - s) < same_arc_length) return at;
+      if (std::abs(at - s) < same_arc_length_share) return at;
     }
     return s;
   }
@@ -65,7 +65,7 @@ class Layout {
       for (const double at : {contact.begin, contact.end}) touched.push_back(snapped(at / l_));
     }
     std::sort(touched.begin(), touched.end());
-    const auto is_duplicate = [](double a, double b) { return b - a < same_arc_length; };
+    const auto is_duplicate = [](double a, double b) { return b - a < same_arc_length_share; };
     touched.erase(std::unique(touched.begin(), touched.end(), is_duplicate), touched.end());
     force = std::max(1.0, force / least_bending_stiffness(start_.span));
     const double longest = std::min(start_.span.length / 8, largest_growth / std::sqrt(force));
@@ -74,7 +74,7 @@ class Layout {
   }
 
   [[nodiscard]] Eigen::Index node_at(double arc_length) const {
-    return energy_model::node_at(start_.mesh.s, snapped(arc_length / l_) - same_arc_length);
+    return energy_model::node_at(start_.mesh.s, snapped(arc_length / l_) - same_arc_length_share);
   }
 
   [[nodiscard]] bool place_contacts() {
@@ -155,7 +155,7 @@ class Layout {
     const bool directors = has_material_directors(problem_);
     // The shape is sampled just after the nodes, at which its curvature may jump.
     std::vector<double> after;
-    for (const double s : start_.mesh.s) after.push_back(std::min(s + same_arc_length, 1.0) * l_);
+    for (const double s : start_.mesh.s) after.push_back(std::min(s + same_arc_length_share, 1.0) * l_);
     const Samples at = shape_.sample(after);
     for (Eigen::Index i = 0; i < start_.mesh.s.size(); ++i) {
       const double s = start_.mesh.s[i];

@@ -91,7 +91,7 @@ std::vector<std::vector<PointMass>> masses_by_span(const MovingRod& rod,
   for (const PointMass& mass : rod.inertia.point_masses) {
     for (std::size_t i = 0; i < spans.size(); ++i) {
       const double s = spans[i].s_of(mass.at, rod.problem.length);
-      if (s < -same_arc_length || s > spans[i].span.length + same_arc_length) continue;
+      if (s < -same_arc_length_share || s > spans[i].span.length + same_arc_length_share) continue;
       result[i].push_back(mass);
       break;
     }

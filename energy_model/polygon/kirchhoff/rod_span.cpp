@@ -15,8 +15,8 @@ namespace {
 /// Returns an arc length in units of l; one that is nearly at an end of the rod is moved there.
 double scaled_arc_length(double at, double length) {
   const double s = at / length;
-  if (s < same_arc_length) return 0;
-  return s > 1 - same_arc_length ? 1 : s;
+  if (s < same_arc_length_share) return 0;
+  return s > 1 - same_arc_length_share ? 1 : s;
 }
 
 /// Returns the directions of clamps, of chords between grips and of forces. They are unit vectors,
@@ -26,7 +26,7 @@ std::vector<Eigen::Vector3d> directions_of(const RodSpan& span) {
   for (const RodSpan::Clamp& clamp : span.clamps) directions.push_back(clamp.direction);
   for (const RodSpan::Hold& hold : span.holds) {
     const Eigen::Vector3d chord = hold.position - span.holds.front().position;
-    if (chord.norm() > same_arc_length) directions.emplace_back(chord.normalized());
+    if (chord.norm() > same_arc_length_share) directions.emplace_back(chord.normalized());
   }
   for (const RodSpan::Load& load : span.loads) {
     if (load.couple.isZero(0) || load.follows) continue;
@@ -56,7 +56,7 @@ std::optional<Plane> plane_of(const RodSpan& span) {
   // zero.
   const auto first = std::max_element(
       directions.begin(), directions.end(),
-      [](const auto& a, const auto& b) { return a.norm() < b.norm() * (1 - same_arc_length); });
+      [](const auto& a, const auto& b) { return a.norm() < b.norm() * (1 - same_arc_length_share); });
   if (first->norm() == 0) *first = Eigen::Vector3d::UnitX();
   return find_plane(span.holds.front().position, *first, directions);
 }
@@ -88,7 +88,7 @@ std::vector<RodSpan::Part> parts_between(const Problem& problem, double begin, d
     const double from = std::max(scaled_arc_length(section.begin, l), begin);
     const double to = std::min(scaled_arc_length(section.end, l), end);
     // A part shorter than the smallest distance of two arc lengths is omitted.
-    if (to - from < same_arc_length) continue;
+    if (to - from < same_arc_length_share) continue;
     RodSection own{section.bending_stiffness / unit, section.torsional_stiffness / unit,
                    section.weight_per_length * l * l * l / unit};
     if (problem.axial_stiffness) own.stretch = unit / (*problem.axial_stiffness * l * l);
@@ -149,7 +149,7 @@ void add_loads(const Problem& problem, RodSpan& span) {
     double at = scaled_arc_length(load.at, l) - span.begin;
     if (at < 0 || at > span.length || clamp_at_load(problem, load)) continue;
     for (const RodSpan::Hold& hold : span.holds) {
-      if (std::abs(at - hold.at) < same_arc_length) at = hold.at;
+      if (std::abs(at - hold.at) < same_arc_length_share) at = hold.at;
     }
     span.loads.push_back(
         {at, load.force / force_unit, load.torque / (force_unit * l), load.follows});

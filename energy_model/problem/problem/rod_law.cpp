@@ -245,7 +245,7 @@ std::vector<OrderedGrip> ordered_grips(const Problem& problem) {
     const double rod = grips[i + 1].grip->at - grips[i].grip->at;
     const double distance = (grips[i + 1].grip->position - grips[i].grip->position).norm();
     const bool reaches = distance < rod || problem.axial_stiffness;
-    if (rod > same_arc_length * problem.length && reaches) continue;
+    if (rod > same_arc_length_share * problem.length && reaches) continue;
     std::ostringstream message;
     message << "Problem: grips at arc lengths " << grips[i].grip->at << " m and "
             << grips[i + 1].grip->at << " m are " << distance << " m apart, must be less than the "
@@ -257,7 +257,7 @@ std::vector<OrderedGrip> ordered_grips(const Problem& problem) {
 
 std::optional<std::size_t> clamp_at_load(const Problem& problem, const Load& load) {
   std::optional<std::size_t> nearest;
-  double least = same_arc_length * problem.length;
+  double least = same_arc_length_share * problem.length;
   for (std::size_t g = 0; g < problem.grips.size(); ++g) {
     const double distance = std::abs(problem.grips[g].at - load.at);
     if (!problem.grips[g].direction || distance > least) continue;

@@ -45,7 +45,9 @@ class FreeBoundaryNewton {
         factor_(solution.factor),
         ends_(free_boundaries(solution.model->span())),
         residual_(free_boundary_residual(solution, ends_)),
-        jacobian_(residual_.size(), residual_.size()) {}
+        jacobian_(residual_.size(), residual_.size()),
+        x_by_ends_(solution.x.size(), residual_.size()),
+        multipliers_by_ends_(solution.multipliers.size(), residual_.size()) {}
 
   int run() {
     if (ends_.empty()) return spent_;
@@ -80,7 +82,7 @@ class FreeBoundaryNewton {
     return displacement;
   }
 
-  /// Solves for the equilibrium with moved ends.
+  /// Solves for the equilibrium with moved ends, starting from its first-order prediction.
   [[nodiscard]] SpanSolution solve_with_moved_ends(const Eigen::VectorXd& displacement,
                                                    NewtonMethod method) {
     Span span = solution_.model->span();
@@ -91,7 +93,8 @@ class FreeBoundaryNewton {
     NewtonOptions options = {.deadline = deadline_};
     if (result.model->elements() == solution_.model->elements()) {
       result.x = result.model->prolong(*solution_.model, solution_.x);
-      result.multipliers = solution_.multipliers;
+      result.x += x_by_ends_ * displacement;
+      result.multipliers = solution_.multipliers + multipliers_by_ends_ * displacement;
       options.method = method;
       if (method == NewtonMethod::simplified) options.first_factor = factor_;
     } else {
@@ -123,13 +126,29 @@ class FreeBoundaryNewton {
     const Eigen::VectorXd residual = free_boundary_residual(trial, ends_);
     const Eigen::RowVectorXd along = displacement.transpose() / displacement.squaredNorm();
     jacobian_ += (residual - residual_ - jacobian_ * displacement) * along;
+    if (has_same_unknowns(trial)) {
+      x_by_ends_ += (trial.x - solution_.x - x_by_ends_ * displacement) * along;
+      multipliers_by_ends_ +=
+          (trial.multipliers - solution_.multipliers - multipliers_by_ends_ * displacement) * along;
+    } else {
+      x_by_ends_.setZero(trial.x.size(), residual_.size());
+      multipliers_by_ends_.setZero(trial.multipliers.size(), residual_.size());
+    }
     residual_ = residual;
     solution_ = std::move(trial);
     return true;
   }
 
+  /// Whether a solution has as many unknowns; the number of elements may change with their lengths.
+  [[nodiscard]] bool has_same_unknowns(const SpanSolution& other) const {
+    return other.x.size() == solution_.x.size() &&
+           other.multipliers.size() == solution_.multipliers.size();
+  }
+
   [[nodiscard]] bool differentiate() {
     Eigen::VectorXd displacement = Eigen::VectorXd::Zero(residual_.size());
+    x_by_ends_.setZero(solution_.x.size(), residual_.size());
+    multipliers_by_ends_.setZero(solution_.multipliers.size(), residual_.size());
     for (Eigen::Index i = 0; i < residual_.size(); ++i) {
       const FreeBoundary& end = ends_[static_cast<std::size_t>(i)];
       const Span::Contact& contact = solution_.model->span().contacts[end.contact];
@@ -146,6 +165,11 @@ class FreeBoundaryNewton {
         perturbed = solve_with_moved_ends(displacement, NewtonMethod::newton);
       if (!perturbed.is_equilibrium()) return false;
       jacobian_.col(i) = (free_boundary_residual(perturbed, ends_) - residual_) / displacement[i];
+      if (has_same_unknowns(perturbed)) {
+        x_by_ends_.col(i) = (perturbed.x - solution_.x) / displacement[i];
+        multipliers_by_ends_.col(i) =
+            (perturbed.multipliers - solution_.multipliers) / displacement[i];
+      }
       displacement[i] = 0;
     }
     return true;
@@ -158,7 +182,8 @@ class FreeBoundaryNewton {
   std::shared_ptr<NewtonFactor> factor_;
   std::vector<FreeBoundary> ends_;
   Eigen::VectorXd residual_;
-  Eigen::MatrixXd jacobian_;  // derivatives of the residual by the ends
+  // Derivatives by the ends: of the residual, and of an equilibrium's unknowns and multipliers.
+  Eigen::MatrixXd jacobian_, x_by_ends_, multipliers_by_ends_;
   int spent_ = 0;
 };
 
