@@ -22,6 +22,9 @@ namespace dlo::compare {
 /// Returns the number of bytes of the control character at a position of valid UTF-8; 0: none.
 [[nodiscard]] std::size_t control_character_length(std::string_view text, std::size_t at);
 
+/// Returns a text without the given characters at its begin and end.
+[[nodiscard]] std::string_view trimmed(std::string_view text, std::string_view characters = " ");
+
 /// Returns ", did you mean X?" for messages, X the word that was probably meant: the first of those
 /// with the smallest Levenshtein distance, if that is at most two and less than half of the length
 /// of the written word; else an empty text.
