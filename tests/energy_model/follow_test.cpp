@@ -88,6 +88,22 @@ TEST(Keep, UndoRestoresTheShapeBefore) {
   EXPECT_LT(distance_between(*again, *near), 1e-9);
 }
 
+// Ends of contact are unknowns, whose iteration reaches the point from a part in contact only if it
+// predicts the shapes between; without that rounding decided.
+TEST(Keep, FollowsAPartToAPointWhateverTheRounding) {
+  for (int k = 0; k < 6; ++k) {
+    const double radius = 0.03 * (1 + 1e-13 * k);
+    const double about = 1.6 / (radius * radius);
+    const Equilibrium start = test::start_over_peg(radius);
+    EnergySolver solver({.start = &start});
+    test::converged(solver.solve(test::rod_pulled_over_peg(radius, 0.6 * about)));
+    for (const double share : {0.7, 0.9, 1.1, 1.0, 1.05, 1.025}) {
+      EXPECT_TRUE(solver.try_follow(test::rod_pulled_over_peg(radius, share * about)))
+          << k << ' ' << share;
+    }
+  }
+}
+
 /// The least clearance of the peg within a thousandth of the length of where the rod touches it.
 double least_clearance_near(const Equilibrium& rod, const ContactPart& contact,
                             const obstacle::Body& peg) {
