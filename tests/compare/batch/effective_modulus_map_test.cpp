@@ -40,7 +40,7 @@ TEST(EffectiveModulusMap, IsWhatItsCommandWrites) {
   EXPECT_EQ(columns, csv_rows(sweep.header()).front());
   for (std::int64_t row = 3; row < sweep.grid().size(); row += 47) {
     const test::CsvRow& shipped = rows[static_cast<std::size_t>(row) + 1];
-    const test::CsvRow fresh = csv_rows(sweep.row(row)).front();
+    const test::CsvRow fresh = csv_rows(sweep.line(sweep.cells(row))).front();
     ASSERT_EQ(fresh.size(), shipped.size());
     for (std::size_t i = 0; i < columns.size(); ++i) {
       const bool result = columns[i].find("_over_length") != std::string::npos ||

@@ -13,7 +13,7 @@
 namespace dlo::compare {
 namespace {
 
-class Reference : public Command {
+class HelpExamples : public Command {
  protected:
   /// Runs a bash script in the test's folder, with data/ and a simulator next to it and dlo in the
   /// path.
@@ -44,7 +44,7 @@ class Reference : public Command {
   }
 };
 
-TEST_F(Reference, EveryExampleOfEveryHelpWorks) {
+TEST_F(HelpExamples, EveryExampleOfEveryHelpWorks) {
   // This example takes longer than all others together; command_test runs it instead.
   const std::map<std::string, std::string> elsewhere = {
       {"paper", "dlo paper --format json -o paper.json"}};
@@ -67,7 +67,7 @@ TEST_F(Reference, EveryExampleOfEveryHelpWorks) {
   }
 }
 
-TEST_F(Reference, NoOptionOfAnyCommandTakesAnEmptyValue) {
+TEST_F(HelpExamples, NoOptionOfAnyCommandTakesAnEmptyValue) {
   std::size_t count = 0;
   for (const std::string& command : commands()) {
     const std::string help = run(command + " --help").out;
@@ -82,7 +82,7 @@ TEST_F(Reference, NoOptionOfAnyCommandTakesAnEmptyValue) {
   expect_error("solve ''", 2, {"SCENE", "the value is empty"});
 }
 
-TEST_F(Reference, ManualPageOfThePackageListsEveryCommand) {
+TEST_F(HelpExamples, ManualPageOfThePackageListsEveryCommand) {
   if (bash("command -v help2man").status != 0) GTEST_SKIP() << "no help2man";
   const RunResult page = bash("help2man --no-info --name models dlo");
   EXPECT_EQ(page.status, 0) << page.err;
