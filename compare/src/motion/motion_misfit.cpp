@@ -184,7 +184,8 @@ Eigen::VectorXd MotionMisfit::simulated(const Scene& scene, const RodDamping& da
       moving.run(times, terms_, recorded.deviation ? fit_tolerance : usual_step_tolerance);
   Eigen::VectorXd result = Eigen::VectorXd::Constant(recorded.coordinates(), scene.length);
   if (run.moved.frames.size() < times.size()) {
-    stop_reason_ = run.stop_reason();
+    stop_reason_ =
+        fmt::format("{}: the moving rod stopped: {}", recorded.motion->file, run.stop_reason());
     return result;
   }
   terms_ = run.moved.terms;
@@ -269,9 +270,7 @@ Eigen::VectorXd MotionMisfit::prior() const {
 LeastSquares least_squares(MotionMisfit& misfit, const Eigen::VectorXd& start, int most_steps,
                            Eigen::Index free) {
   LeastSquares at{.parameters = start, .residuals = misfit.residuals(start), .derivatives = {}};
-  if (!misfit.stop_reason().empty()) {
-    throw ConvergenceError("the moving rod stopped: " + misfit.stop_reason());
-  }
+  if (!misfit.stop_reason().empty()) throw ConvergenceError(misfit.stop_reason());
   const auto freedom =
       std::max<double>(1, static_cast<double>(at.residuals.size() - start.size() + free));
   // Predicted decrease of a step that changes no parameter by more than a seventh of its standard

@@ -54,7 +54,8 @@ class MotionMisfit {
   }
   /// Returns the largest displacement of a marker from its start in the last simulations [m].
   [[nodiscard]] double largest_displacement() const { return largest_displacement_; }
-  /// Returns why one of the last simulations ended early; empty if none did.
+  /// Returns why one of the last simulations ended early, with the file of its recording; empty if
+  /// none did.
   [[nodiscard]] const std::string& stop_reason() const { return stop_reason_; }
 
   /// Returns a physical parameter [SI]; for the stiffness its ratio to the scene's.

@@ -96,7 +96,7 @@ Eigen::VectorXd with_best_stiffness(MotionMisfit& misfit, const Eigen::VectorXd&
     least = sum;
     best = parameters;
   }
-  if (best.size() == 0) throw ConvergenceError("the moving rod stopped: " + misfit.stop_reason());
+  if (best.size() == 0) throw ConvergenceError(misfit.stop_reason());
   return best;
 }
 

@@ -157,6 +157,7 @@ TEST_F(MotionCommand, CalibrateFindsTheStiffnessThatMovedTheMarkers) {
     EXPECT_LT(document.at(none).at("high"), 0.01) << none;
   }
   expect_error(calibrate + "--format csv", 2, {"--format csv: not available with --motion"});
+  expect_error(calibrate + "--time-limit 0.001", 3, {"markers.csv", "time limit"});
 }
 
 TEST_F(MotionCommand, WhatCalibrateWritesMakesTheMotionRight) {
