@@ -155,7 +155,8 @@ class Layout {
     const bool directors = has_material_directors(problem_);
     // The shape is sampled just after the nodes, at which its curvature may jump.
     std::vector<double> after;
-    for (const double s : start_.mesh.s) after.push_back(std::min(s + same_arc_length_share, 1.0) * l_);
+    for (const double s : start_.mesh.s)
+      after.push_back(std::min(s + same_arc_length_share, 1.0) * l_);
     const Samples at = shape_.sample(after);
     for (Eigen::Index i = 0; i < start_.mesh.s.size(); ++i) {
       const double s = start_.mesh.s[i];

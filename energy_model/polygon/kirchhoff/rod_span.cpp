@@ -54,9 +54,10 @@ std::optional<Plane> plane_of(const RodSpan& span) {
   if (directions.empty()) directions.emplace_back(Eigen::Vector3d::UnitX());
   // If a pinned rod has no unit direction, its largest force is the first direction, which may be
   // zero.
-  const auto first = std::max_element(
-      directions.begin(), directions.end(),
-      [](const auto& a, const auto& b) { return a.norm() < b.norm() * (1 - same_arc_length_share); });
+  const auto first =
+      std::max_element(directions.begin(), directions.end(), [](const auto& a, const auto& b) {
+        return a.norm() < b.norm() * (1 - same_arc_length_share);
+      });
   if (first->norm() == 0) *first = Eigen::Vector3d::UnitX();
   return find_plane(span.holds.front().position, *first, directions);
 }
