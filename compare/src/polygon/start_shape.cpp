@@ -115,7 +115,7 @@ class Arch {
 
   /// Returns the length of the curve up to each of its points.
   [[nodiscard]] std::vector<double> lengths_along() const {
-    std::vector<double> lengths = {0};
+    std::vector<double> lengths(1, 0);
     Eigen::Vector3d last = point(0);
     for (int i = 1; i <= curve_points; ++i) {
       const Eigen::Vector3d next = point(i);
