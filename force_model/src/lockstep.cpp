@@ -241,18 +241,16 @@ std::vector<RelaxResult> BatchBlock::relax(const RelaxOptions& options) {
     for (std::size_t rod = 0; rod < rods_.size(); ++rod) {
       due[rod] = active(rod) && searches[rod].count(results[rod]);
     }
-    if (std::find(due.begin(), due.end(), true) != due.end()) {
-      compute_forces();
-      for (std::size_t rod = 0; rod < rods_.size(); ++rod) {
-        if (!due[rod]) continue;
-        // The equilibrium is unstable, as that of an upright rod: it is displaced, as any
-        // disturbance would do.
-        const Eigen::Matrix3Xd descent = searches[rod].check_rest(shape(rod));
-        if (descent.cols() > 0) nudge(rod, descent);
-        controls_[rod].correct_slowest_mode(searches[rod].slowest_mode());
-        if (searches[rod].bounces()) controls_[rod].descend();
-        c_F_.lane[rod] = controls_[rod].options().c_F;
-      }
+    if (std::find(due.begin(), due.end(), true) != due.end()) compute_forces();
+    for (std::size_t rod = 0; rod < rods_.size(); ++rod) {
+      if (!due[rod]) continue;
+      // The equilibrium is unstable, as that of an upright rod: it is displaced, as any
+      // disturbance would do.
+      const Eigen::Matrix3Xd descent = searches[rod].check_rest(shape(rod));
+      if (descent.cols() > 0) nudge(rod, descent);
+      controls_[rod].correct_slowest_mode(searches[rod].slowest_mode());
+      if (searches[rod].bounces()) controls_[rod].descend();
+      c_F_.lane[rod] = controls_[rod].options().c_F;
     }
     for (std::size_t rod = 0; rod < rods_.size(); ++rod) stop_if_done(rod);
   }

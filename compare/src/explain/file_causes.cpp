@@ -165,6 +165,31 @@ MeasuredShape without(const MeasuredShape& shape, Eigen::Index first, Eigen::Ind
 /// Whether a polyline is shorter than 99 % of the rod.
 bool is_short(double polyline_length, double length) { return polyline_length < 0.99 * length; }
 
+/// Unit and axes of a file, and its points with both corrected.
+struct CorrectedFile {
+  const FileUnit& unit;
+  const FileAxes& axes;
+  MeasuredShape shape;
+  double covered;  ///< length of its polyline, divided by that of the rod
+};
+
+/// Calls `take` for a file as it is, with another origin, with missing ends, and with both.
+void combine_poses(const CorrectedFile& file, bool several, const TakeFileCause& take) {
+  const int changed = (file.unit.words.empty() ? 0 : 1) + (file.axes.words.empty() ? 0 : 1);
+  const std::string group = several ? joint_cause : file.axes.words.empty() ? "" : "axes";
+  for (const auto& [part, moved] : {std::pair(0, 0), {0, 1}, {1, 0}, {1, 1}}) {
+    const int errors = changed + part + moved;
+    if (errors == 0 || several != (errors > 1)) continue;
+    if (part == 1 && !(several && is_short(file.covered, 1))) continue;
+    take({.words = file.unit.words + (changed == 2 ? ", and " : "") + file.axes.words,
+          .shape = file.shape,
+          .pose = moved == 1 ? PoseFreedom::translation : PoseFreedom::known,
+          .numbers = errors - 1 + moved,
+          .part = part == 1,
+          .cause_group = group});
+  }
+}
+
 /// Calls `take` for each of these errors of a file, or for each combination of several ones: its
 /// unit, its axes, its origin and, in combinations, missing ends. Each error after the first counts
 /// as one number, and another origin as one more.
@@ -181,23 +206,7 @@ void combine_errors(const Scene& scene, const MeasuredShape& shape, double lengt
     if (several && !(covered > shortest && covered < longest)) continue;
     const MeasuredShape in_metres = scaled(shape, unit.factor);
     for (const FileAxes& axes : all_axes) {
-      const int changed = (unit.words.empty() ? 0 : 1) + (axes.words.empty() ? 0 : 1);
-      for (const bool part : {false, true}) {
-        for (const PoseFreedom pose : {PoseFreedom::known, PoseFreedom::translation}) {
-          const int moved = pose == PoseFreedom::translation ? 1 : 0;
-          const int errors = changed + (part ? 1 : 0) + moved;
-          if (errors == 0 || several != (errors > 1)) continue;
-          if (part && !(several && is_short(covered, 1))) continue;
-          take({.words = unit.words + (changed == 2 ? ", and " : "") + axes.words,
-                .shape = turned(in_metres, axes.axes),
-                .pose = pose,
-                .numbers = errors - 1 + moved,
-                .part = part,
-                .cause_group = several              ? joint_cause
-                               : axes.words.empty() ? ""
-                                                    : "axes"});
-        }
-      }
+      combine_poses({unit, axes, turned(in_metres, axes.axes), covered}, several, take);
     }
   }
 }

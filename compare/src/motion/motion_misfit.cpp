@@ -267,6 +267,22 @@ Eigen::VectorXd MotionMisfit::prior() const {
   return result;
 }
 
+namespace {
+
+/// Stores the parameters and residuals of a step. The derivatives by logarithms of dampings change
+/// in proportion to the dampings.
+void accept_step(LeastSquares& at, const MotionMisfit& misfit, Eigen::Index free,
+                 const Eigen::VectorXd& parameters, const Eigen::VectorXd& residuals) {
+  for (Eigen::Index i = free; i < misfit.physical_parameters(); ++i) {
+    if (!misfit.is_damping(i)) continue;
+    at.derivatives.col(i) *= std::exp(parameters[i] - at.parameters[i]);
+  }
+  at.parameters = parameters;
+  at.residuals = residuals;
+}
+
+}  // namespace
+
 LeastSquares least_squares(MotionMisfit& misfit, const Eigen::VectorXd& start, int most_steps,
                            Eigen::Index free) {
   LeastSquares at{.parameters = start, .residuals = misfit.residuals(start), .derivatives = {}};
@@ -306,12 +322,7 @@ LeastSquares least_squares(MotionMisfit& misfit, const Eigen::VectorXd& start, i
       const Eigen::VectorXd residuals = misfit.residuals(parameters);
       improved = misfit.stop_reason().empty() && equations.sum(residuals, parameters) < sum;
       if (improved) {
-        for (Eigen::Index i = free; i < misfit.physical_parameters(); ++i) {
-          if (!misfit.is_damping(i)) continue;
-          at.derivatives.col(i) *= std::exp(parameters[i] - at.parameters[i]);
-        }
-        at.parameters = parameters;
-        at.residuals = residuals;
+        accept_step(at, misfit, free, parameters, residuals);
       } else if (stale) {
         break;
       }

@@ -114,6 +114,15 @@ constexpr int fewer_terms = 12;
 /// Number of segments of the coarsest chain: its points are the motion_points.
 constexpr int segments = motion_points - 1;
 
+/// Reverses the order of a rod's points and of the forces on them.
+void reverse_order(Shape& rod, PointForces& forces, double length) {
+  for (Eigen::Matrix3Xd* each : {&rod.points, &forces.weights, &forces.loads}) {
+    *each = each->rowwise().reverse().eval();
+  }
+  std::ranges::reverse(rod.arc_length);
+  for (double& s : rod.arc_length) s = length - s;
+}
+
 }  // namespace
 
 std::optional<MomentBalance> moment_balance(const Scene& scene, const Shape& shape, double power) {
@@ -132,11 +141,7 @@ std::optional<MomentBalance> moment_balance(const Scene& scene, const Shape& sha
   Shape rod = shape;
   PointForces forces = forces_on_points(scene, shape.arc_length);
   if (first == nullptr) {  // the order begins at a held end
-    for (Eigen::Matrix3Xd* each : {&rod.points, &forces.weights, &forces.loads}) {
-      *each = each->rowwise().reverse().eval();
-    }
-    std::ranges::reverse(rod.arc_length);
-    for (double& s : rod.arc_length) s = scene.length - s;
+    reverse_order(rod, forces, scene.length);
     std::swap(first, last);
   }
   const Eigen::Index unknown = last == nullptr ? 0 : last->direction ? 6 : 3;

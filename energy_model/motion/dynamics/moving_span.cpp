@@ -325,6 +325,11 @@ class MovingSpan {
   }
 
   /// Simulates with one contact law; ends when the rod enters a rigid obstacle too deeply.
+  [[nodiscard]] static SolveStatus status_of(const std::string& problem, const Deadline& deadline) {
+    if (problem.empty()) return SolveStatus::converged;
+    return deadline.passed() ? SolveStatus::time_limit : SolveStatus::failed;
+  }
+
   [[nodiscard]] SpanRun run_with(const ContactLaw& contact, const SpanMotion& motion,
                                  const DynamicsOptions& options, const Deadline& deadline) const {
     SpanRun result;
@@ -388,9 +393,7 @@ class MovingSpan {
     if (is_too_deep() && !deadline.passed()) {
       result.message = "a rigid obstacle is struck too hard for the depth that contact may have";
     }
-    result.status = result.message.empty() ? SolveStatus::converged
-                    : deadline.passed()    ? SolveStatus::time_limit
-                                           : SolveStatus::failed;
+    result.status = status_of(result.message, deadline);
     return result;
   }
 

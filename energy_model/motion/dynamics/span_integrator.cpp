@@ -149,6 +149,19 @@ bool SpanIntegrator::try_step(SpanInstant& at, double step, const Eigen::MatrixX
     drives.push_back(
         drive_(std::min(at.time + rule_.nodes[i] * step, before_break(at.time + step))));
   }
+  using Powers = std::array<EnergyBalance, stage_count>;
+  const auto accept = [&](const Powers& powers, int corrections, Factor& newton) {
+    at.x += step * at.v + step * step * (found.values.topRows(n) * rule_.last.transpose());
+    at.v += step * (found.values.topRows(n) * rule_.weights);
+    at.time += step;
+    for (std::size_t i = 0; i < stage_count; ++i) {
+      add(powers[i], step * rule_.weights[static_cast<Eigen::Index>(i)], at.done);
+    }
+    found.step = step;
+    found.end = at.time;
+    if (corrections > slow_convergence) newton.step = -1;
+    return m == 0 || project(at).empty();
+  };
   for (const bool renew : {false, true}) {
     Factor& newton =
         span_.has_twist()
@@ -157,7 +170,7 @@ bool SpanIntegrator::try_step(SpanInstant& at, double step, const Eigen::MatrixX
             : factor(at, step, renew);
     found.values = guess;
     Eigen::MatrixXd& values = found.values;
-    std::array<EnergyBalance, stage_count> powers;
+    Powers powers;
     Eigen::VectorXd residual(stage_count * (n + m));
     double before = std::numeric_limits<double>::infinity();
     for (int correction = 0; correction < most_newton_corrections; ++correction) {
@@ -182,16 +195,7 @@ bool SpanIntegrator::try_step(SpanInstant& at, double step, const Eigen::MatrixX
       values -= change;
       const bool stalled = size >= before && size < 1e3 * enough;
       if (size < enough || stalled) {
-        at.x += step * at.v + step * step * (values.topRows(n) * rule_.last.transpose());
-        at.v += step * (values.topRows(n) * rule_.weights);
-        at.time += step;
-        for (std::size_t i = 0; i < stage_count; ++i) {
-          add(powers[i], step * rule_.weights[static_cast<Eigen::Index>(i)], at.done);
-        }
-        found.step = step;
-        found.end = at.time;
-        if (correction > slow_convergence) newton.step = -1;
-        return m == 0 || project(at).empty();
+        return accept(powers, correction, newton);
       }
       if (size > 2 * before && correction > 3) break;
       before = size;

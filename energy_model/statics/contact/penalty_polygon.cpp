@@ -1,6 +1,7 @@
 #include "contact/penalty_polygon.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 
@@ -54,35 +55,44 @@ std::vector<double> mesh_of(const Span& span, Segments segments) {
   return mesh;
 }
 
+/// Returns the largest clearance from the ground of the corners of a box in a body's axes.
+double highest_corner(const obstacle::Body& body, const obstacle::Body& ground,
+                      const std::array<Eigen::Vector3d, 2>& corners) {
+  double highest = -std::numeric_limits<double>::infinity();
+  for (std::size_t corner = 0; corner < 8; ++corner) {
+    Eigen::Vector3d at;
+    for (int k = 0; k < 3; ++k) at[k] = corners[(corner >> k) % 2][k];
+    highest = std::max(highest, ground.clearance(body.centre() + body.axes() * at));
+  }
+  return highest;
+}
+
 /// Returns a block extended into a half-space that its face touches or lies within: a polygon
 /// pushed out of that face would be caught between the block and the half-space.
 obstacle::Body extended_to_half_space(const obstacle::Body& body, const Span& span) {
   constexpr double flush_height = 1e-6;  // largest height of a flush face [l]
-  Eigen::Vector3d lower = body.lower().array() - body.radius();
-  Eigen::Vector3d upper = body.upper().array() + body.radius();
-  if (!(upper - lower).allFinite() || !(body.lower().array() < body.upper().array()).all()) {
+  std::array<Eigen::Vector3d, 2> corners = {body.lower().array() - body.radius(),
+                                            body.upper().array() + body.radius()};
+  if (!(corners[1] - corners[0]).allFinite() ||
+      !(body.lower().array() < body.upper().array()).all()) {
     return body;
   }
   for (const Span::Obstacle& ground : span.rigid_obstacles) {
     if (!ground.body.is_half_space()) continue;
     for (Eigen::Index axis = 0; axis < 3; ++axis) {
-      for (const bool up : {false, true}) {
-        const double outward = (up ? 1 : -1) * ground.body.normal().dot(body.axes().col(axis));
-        if (!(outward < 0)) continue;  // the face does not point into the half-space
-        double highest = -std::numeric_limits<double>::infinity();  // highest corner
-        for (int corner = 0; corner < 8; ++corner) {
-          if (((corner >> axis) % 2 == 1) != up) continue;
-          Eigen::Vector3d at = lower;
-          for (int k = 0; k < 3; ++k) at[k] = (corner >> k) % 2 == 1 ? upper[k] : lower[k];
-          highest = std::max(highest, ground.body.clearance(body.centre() + body.axes() * at));
-        }
-        if (highest > flush_height * span.length) continue;
-        (up ? upper[axis] : lower[axis]) += up ? span.length : -span.length;
+      for (const std::size_t up : {0U, 1U}) {
+        const double sign = up == 1 ? 1 : -1;
+        // The face has to point into the half-space.
+        if (!(sign * ground.body.normal().dot(body.axes().col(axis)) < 0)) continue;
+        std::array<Eigen::Vector3d, 2> face = corners;
+        face[1 - up][axis] = corners[up][axis];
+        if (highest_corner(body, ground.body, face) > flush_height * span.length) continue;
+        corners[up][axis] += sign * span.length;
       }
     }
   }
-  return obstacle::Body::box(body.centre() + body.axes() * (lower + upper) / 2, body.axes(),
-                             upper - lower, body.radius());
+  return obstacle::Body::box(body.centre() + body.axes() * (corners[0] + corners[1]) / 2,
+                             body.axes(), corners[1] - corners[0], body.radius());
 }
 
 class PenaltyRelaxation {
@@ -293,6 +303,15 @@ class PenaltyRelaxation {
     return points;
   }
 
+  /// Returns the arc length of a short run as a contact point: an end of the rod, or the mean of
+  /// its arc lengths weighted by depth.
+  /// @param moment  sum of depths times arc lengths
+  [[nodiscard]] double contact_point(double begin, double end, double depth, double moment) const {
+    if (begin == 0) return 0;
+    if (end == span_.length) return span_.length;
+    return depth > 0 ? moment / depth : begin;
+  }
+
   /// Adds the contacts of a rigid obstacle: runs of consecutive points within it.
   void add_contacts(const Span::Obstacle& obstacle, const Eigen::Matrix3Xd& points,
                     PenaltyPolygon& result) const {
@@ -328,10 +347,7 @@ class PenaltyRelaxation {
           depth -= clearance[k];
           moment -= clearance[k] * at[k];
         }
-        const bool at_end = at[first] == 0 || at[i] == span_.length;
-        if (!at_end) contact.begin = contact.end = depth > 0 ? moment / depth : at[first];
-        if (at[i] == span_.length) contact.begin = contact.end = span_.length;
-        if (at[first] == 0) contact.begin = contact.end = 0;
+        contact.begin = contact.end = contact_point(at[first], at[i], depth, moment);
         if (is_held(span_, contact.begin)) continue;
       }
       result.contacts.push_back(contact);
