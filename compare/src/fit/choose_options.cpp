@@ -10,6 +10,7 @@
 #include "dlo/compare/error.hpp"
 #include "fit/fit_from.hpp"
 #include "least_squares/fitted_rods.hpp"
+#include "least_squares/measured_shapes.hpp"
 #include "wire/identifiable.hpp"
 #include "wire/wire_fit.hpp"
 #include "wire/wire_numbers.hpp"
@@ -153,6 +154,8 @@ class OptionsSearch {
         plain.prediction = plain_prediction();
         trials_.push_back({options, std::move(plain)});
       }
+    } catch (const TimeLimitError&) {
+      throw;
     } catch (const ResultError&) {
       // There is no clamp or plane, the grippers differ, the points are too few, or a shape was not
       // found.

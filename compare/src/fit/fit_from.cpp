@@ -15,6 +15,7 @@
 #include "fit/chain_springs.hpp"
 #include "fit/choose_options.hpp"
 #include "fit/material_profiles.hpp"
+#include "least_squares/measured_shapes.hpp"
 #include "wire/between_shapes.hpp"
 #include "wire/identifiable.hpp"
 #include "wire/leave_one_out.hpp"
@@ -82,8 +83,10 @@ void fit_alternatives(MaterialProfiles& material, const MaterialPoint& best, Mat
                                          options, best, material.has_density());
       if (!(other.rms_m <= reported_residual_ratio * fit.rms_m)) continue;
       add_alternative({terms, directions, other.rms_m, other.youngs_modulus}, fit);
+    } catch (const TimeLimitError&) {
+      throw;
     } catch (const ResultError&) {
-      // There is no clamp or plane, the points are too few, a shape was not found, or time is up.
+      // There is no clamp or plane, the points are too few, or a shape was not found.
     }
   }
   std::stable_sort(
@@ -111,8 +114,10 @@ bool extend_interval_to_curved_wire(MaterialProfiles& material, const MaterialPo
                                        options, best, material.has_density())
                                   .youngs_modulus;
     if (include_interval(fit.youngs_modulus, other, options.largest_interval_ratio)) return true;
+  } catch (const TimeLimitError&) {
+    throw;
   } catch (const ResultError&) {
-    // There is no clamp or plane, the points are too few, a shape was not found, or time is up.
+    // There is no clamp or plane, the points are too few, or a shape was not found.
     return false;
   }
   if (fit.not_identified.empty()) {

@@ -4,7 +4,6 @@
 
 #include <Eigen/Eigenvalues>
 #include <Eigen/Geometry>
-#include <algorithm>
 #include <stdexcept>
 #include <utility>
 
@@ -170,12 +169,23 @@ double MeasuredShapes::out_of_plane_displacement(std::size_t shape, const Scene&
 }
 
 double MeasuredShapes::time_left() const {
-  const double limit = options_.solve.time_limit;
-  const double remaining = limit * static_cast<double>(size()) - timer_.seconds();
-  if (remaining > 0) return std::min(limit, remaining);
-  throw ConvergenceError(
-      fmt::format("calibrate: not done within {:g} s{}, after {} equilibria (--time-limit)", limit,
-                  size() > 1 ? " per scene" : "", solves_));
+  const double remaining =
+      options_.solve.time_limit * static_cast<double>(size()) - timer_.seconds();
+  if (!(remaining > 0)) throw_time_limit();
+  return remaining;
+}
+
+void MeasuredShapes::throw_time_limit() const {
+  throw TimeLimitError(
+      fmt::format("calibrate: not done within {:g} s{}, after {} equilibria (--time-limit)",
+                  options_.solve.time_limit, size() > 1 ? " per scene" : "", solves_));
+}
+
+energy_model::Equilibrium MeasuredShapes::counted(energy_model::Equilibrium rod) {
+  if (rod.status == energy_model::SolveStatus::time_limit) throw_time_limit();
+  evaluations_ += rod.evaluations;
+  if (rod.status == energy_model::SolveStatus::evaluation_limit) ++limited_solves_;
+  return rod;
 }
 
 energy_model::Equilibrium MeasuredShapes::solve_near(std::size_t shape, const Scene& scene,
@@ -190,13 +200,10 @@ energy_model::Equilibrium MeasuredShapes::solve_near(std::size_t shape, const Sc
   const double remaining = time_left();
   ++solves_;
   try {
-    energy_model::Equilibrium rod =
-        energy_model::energy_near(problem, aligned.arc_length, aligned.points,
-                                  {.terms = options_.solve.terms,
-                                   .max_evaluations = options_.solve.max_evaluations,
-                                   .time_limit = remaining});
-    evaluations_ += rod.evaluations;
-    return rod;
+    return counted(energy_model::energy_near(problem, aligned.arc_length, aligned.points,
+                                             {.terms = options_.solve.terms,
+                                              .max_evaluations = options_.solve.max_evaluations,
+                                              .time_limit = remaining}));
   } catch (const std::invalid_argument& error) {
     throw InputError(fmt::format("{}: {}", scene.file, error.what()));
   }
@@ -209,10 +216,9 @@ energy_model::Equilibrium MeasuredShapes::solve_stretched(const Scene& scene,
   options.start = start;
   ++solves_;
   try {
-    energy_model::Equilibrium rod = solve_reference(scene, options);
-    evaluations_ += rod.evaluations;
-    return rod;
+    return counted(solve_reference(scene, options));
   } catch (const ConvergenceError&) {
+    (void)time_left();
     return {};  // not_run
   }
 }
@@ -223,14 +229,11 @@ energy_model::Equilibrium MeasuredShapes::solve(const energy_model::Problem& pro
   const double remaining = time_left();
   ++solves_;
   try {
-    energy_model::Equilibrium rod =
+    return counted(
         energy_model::solve_energy(problem, {.terms = options_.solve.terms,
                                              .max_evaluations = options_.solve.max_evaluations,
                                              .time_limit = remaining,
-                                             .start = start});
-    evaluations_ += rod.evaluations;
-    if (rod.status == energy_model::SolveStatus::evaluation_limit) ++limited_solves_;
-    return rod;
+                                             .start = start}));
   } catch (const std::invalid_argument& error) {
     throw InputError(fmt::format("{}: {}", file, error.what()));
   }

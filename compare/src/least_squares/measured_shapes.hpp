@@ -6,6 +6,7 @@
 
 #include "base/timer.hpp"
 #include "dlo/compare/alignment.hpp"
+#include "dlo/compare/error.hpp"
 #include "dlo/compare/shape_file.hpp"
 #include "dlo/compare/solution.hpp"
 #include "dlo/energy_model/energy.hpp"
@@ -30,13 +31,19 @@ struct MeasuredOptions {
   PoseFreedom pose = PoseFreedom::known;  ///< unknown coordinates of the shapes' frames
   ArcLengths arc_lengths = ArcLengths::automatic;
   PointWeights weights = PointWeights::equal;
-  SolveOptions solve;  ///< limits; the time limit is that of each shape
+  SolveOptions solve;  ///< limits; the time limit times the number of shapes is that of the fit
   FlatShapes flat = FlatShapes::unmeasured;
 };
 
 /// Column of a fitted number, and its derivative of the rod's points at the measured ones [m per
 /// unit of the number], 3 x M.
 using Movement = std::pair<Eigen::Index, Eigen::Matrix3Xd>;
+
+/// The time limit of a fit is reached. A fit without a part that time left out would claim more
+/// than is known, so such an error passes where a fit without an equilibrium is left out.
+class TimeLimitError : public ConvergenceError {
+  using ConvergenceError::ConvergenceError;
+};
 
 /// Measured shapes and the rods of their scenes: computes the residuals of every fit, and the
 /// energy model's solutions for them, within one time limit.
@@ -62,7 +69,7 @@ class MeasuredShapes {
 
   /// Solves a modified scene of a shape by the scene's reference_model().
   /// @param start  an equilibrium to start from; null: search
-  /// @throws ConvergenceError if the time limit is exceeded
+  /// @throws TimeLimitError
   /// @throws InputError if the model does not support the scene
   [[nodiscard]] energy_model::Equilibrium solve(std::size_t shape, const Scene& scene,
                                                 const energy_model::Equilibrium* start);
@@ -110,8 +117,11 @@ class MeasuredShapes {
 
  private:
   [[nodiscard]] bool is_confined(std::size_t shape, const Scene& scene) const;
-  /// Returns the time limit of the next solve [s]. @throws ConvergenceError if no time is left
+  /// Returns the time limit of the next solve [s]. @throws TimeLimitError if no time is left
   [[nodiscard]] double time_left() const;
+  [[noreturn]] void throw_time_limit() const;
+  /// Adds a solve to the counts of evaluations. @throws TimeLimitError if time ended it
+  energy_model::Equilibrium counted(energy_model::Equilibrium rod);
   [[nodiscard]] energy_model::Equilibrium solve_stretched(const Scene& scene,
                                                           const energy_model::Equilibrium* start);
   energy_model::Equilibrium solve(const energy_model::Problem& problem, const std::string& file,
