@@ -57,14 +57,11 @@ TEST(SecondVariation, SeesWhatBucklesOutOfPlane) {
   ASSERT_GE(found.size(), 2U);
   EXPECT_EQ(found[0].status, SolveStatus::converged);
   EXPECT_NEAR(found[0].energy.total(), 3.117, 5e-4);
-  bool saddle = false;
-  for (const Equilibrium& equilibrium : found) {
-    if (std::abs(equilibrium.energy.total() - 3.802) > 5e-4) continue;
-    saddle = true;
-    EXPECT_EQ(equilibrium.status, SolveStatus::saddle);
-    EXPECT_LT(equilibrium.smallest_eigenvalue, 0);
-  }
-  EXPECT_TRUE(saddle);
+  const auto saddle = std::ranges::find_if(
+      found, [](const Equilibrium& e) { return std::abs(e.energy.total() - 3.802) <= 5e-4; });
+  ASSERT_NE(saddle, found.end());
+  EXPECT_EQ(saddle->status, SolveStatus::saddle);
+  EXPECT_LT(saddle->smallest_eigenvalue, 0);
 }
 
 TEST(SecondVariation, CountsTheZeroModeOfARod) {
@@ -74,7 +71,7 @@ TEST(SecondVariation, CountsTheZeroModeOfARod) {
   const Equilibrium result = test::converged(solve_exact(arch));
   EXPECT_TRUE(message_contains(result, "1 zero mode")) << result.message;
   EXPECT_NEAR(result.smallest_eigenvalue, 0, 1e-7);
-  EXPECT_FALSE(message_contains(solve_exact(heavy_cantilever(1, 0)), "for nothing"));
+  EXPECT_FALSE(message_contains(solve_exact(heavy_cantilever(1, 0)), "zero mode"));
 }
 
 TEST(Exact, PutsStableEquilibriaFirst) {

@@ -1,5 +1,6 @@
 """Tests of results: arrays that are views, and the command's own documents."""
 
+import contextlib
 import copy
 import gc
 import json
@@ -202,9 +203,12 @@ def test_a_shape_may_be_the_name_of_a_file_and_one_needs_no_list(root, cable, co
     points = numpy.loadtxt(shape, delimiter=",", skiprows=3)
     pair = (points, numpy.linspace(0.1, 1, len(points)))
     for one, listed in ((shape, [points]), (points, [points]), (points.tolist(), [shape]), (pair, [pair])):
-        fits = [dlo.calibrate(scene, shapes, time_limit=1000).youngs_modulus for shapes in (one, listed)]
-        assert fits[0] == fits[1]
+        assert len({dlo.calibrate(scene, shapes, time_limit=1000).youngs_modulus for shapes in (one, listed)}) == 1
     assert len(dlo.calibrate(scene, (points, points + 1e-4))["shapes"]) == 2
+    # A fit whose alternatives take too long has no result: these widen the interval.
+    for limit in (0.01, 0.04, 0.16, 0.64, 2.56):
+        with contextlib.suppress(dlo.ConvergenceError):
+            assert dlo.calibrate(scene, pair, time_limit=limit).youngs_modulus is None
     for call, words in [
         (lambda: dlo.check(cable, shape, arc_length=[0, 1]), "arc_length: given besides the name of a file"),
         (lambda: dlo.check(cable, "none.csv"), "none.csv"),

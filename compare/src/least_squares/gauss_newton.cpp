@@ -23,29 +23,26 @@ constexpr double information_tolerance = 1e-12;
 /// identified.
 constexpr double least_part = 1e-3;
 
-Eigen::MatrixXd information_of(const LinearFit& fit, double variance,
-                               const Eigen::VectorXd& prior_inverse_deviations) {
+Eigen::MatrixXd information_of(const LinearFit& fit, double variance) {
   Eigen::MatrixXd information = fit.design.transpose() * fit.design / variance;
-  information.diagonal() += prior_inverse_deviations.cwiseAbs2();
+  information.diagonal() += fit.prior_inverse_deviations.cwiseAbs2();
   return information;
 }
 
 /// Returns the gradient of the log posterior density by the numbers, which is minus half that of
 /// the deviance: the sum of squares divided by the variance, plus the priors' terms.
 Eigen::VectorXd log_posterior_gradient(const LinearFit& fit, double variance,
-                                       const Eigen::VectorXd& prior_inverse_deviations,
                                        const Eigen::VectorXd& values) {
   return fit.design.transpose() * fit.residual / variance -
-         prior_inverse_deviations.cwiseAbs2().cwiseProduct(values);
+         fit.prior_inverse_deviations.cwiseAbs2().cwiseProduct(values);
 }
 
 /// Returns the logarithm of the determinant of half the deviance's second derivatives by all
 /// numbers except the first, without those that neither points nor priors determine.
-double log_determinant(const LinearFit& fit, double variance,
-                       const Eigen::VectorXd& prior_inverse_deviations) {
-  const Eigen::Index others = prior_inverse_deviations.size() - 1;
+double log_determinant(const LinearFit& fit, double variance) {
+  const Eigen::Index others = fit.design.cols() - 1;
   const Eigen::ColPivHouseholderQR<Eigen::MatrixXd> information(
-      information_of(fit, variance, prior_inverse_deviations).bottomRightCorner(others, others));
+      information_of(fit, variance).bottomRightCorner(others, others));
   return information.matrixQR().diagonal().head(information.rank()).array().abs().log().sum();
 }
 
@@ -60,12 +57,11 @@ constexpr double deviance_tolerance = 1e-5;
 /// by `first_step`.
 /// @param gradient  result of log_posterior_gradient(), of all numbers
 Eigen::VectorXd step_of_others(const LinearFit& fit, double variance,
-                               const Eigen::VectorXd& prior_inverse_deviations,
                                const Eigen::VectorXd& gradient, double first_step) {
-  const Eigen::Index others = prior_inverse_deviations.size() - 1;
+  const Eigen::Index others = fit.design.cols() - 1;
   const auto of_others = fit.design.rightCols(others);
   Eigen::MatrixXd information = of_others.transpose() * of_others / variance;
-  information.diagonal() += prior_inverse_deviations.tail(others).cwiseAbs2();
+  information.diagonal() += fit.prior_inverse_deviations.tail(others).cwiseAbs2();
   const Eigen::VectorXd left =
       gradient.tail(others) - of_others.transpose() * fit.design.col(0) / variance * first_step;
   return information.completeOrthogonalDecomposition().solve(left);
@@ -75,10 +71,10 @@ Eigen::VectorXd step_of_others(const LinearFit& fit, double variance,
 /// @param frames  number of columns of the series' design, before those of the numbers, that belong
 /// to frames
 LinearFit linear_fit(const std::vector<ResidualSeries>& series, const ErrorCovariance& covariance,
-                     Eigen::Index frames) {
+                     Eigen::Index frames, const Eigen::VectorXd& prior_inverse_deviations) {
   Innovations whitened = innovations(series, covariance);
   LinearFit result{whitened.design.rightCols(whitened.design.cols() - frames),
-                   std::move(whitened.residual), whitened.design.rows()};
+                   std::move(whitened.residual), prior_inverse_deviations, whitened.design.rows()};
   if (frames == 0) return result;
   Eigen::ColPivHouseholderQR<Eigen::MatrixXd> qr(whitened.design.leftCols(frames));
   qr.setThreshold(frame_rank_tolerance);
@@ -92,43 +88,38 @@ LinearFit linear_fit(const std::vector<ResidualSeries>& series, const ErrorCovar
 
 }  // namespace
 
-Eigen::MatrixXd posterior(const LinearFit& fit, double variance,
-                          const Eigen::VectorXd& prior_inverse_deviations) {
-  return information_of(fit, variance, prior_inverse_deviations)
-      .completeOrthogonalDecomposition()
-      .pseudoInverse();
+Eigen::MatrixXd posterior(const LinearFit& fit, double variance) {
+  return information_of(fit, variance).completeOrthogonalDecomposition().pseudoInverse();
 }
 
 Eigen::MatrixXd sandwich_covariance(const std::vector<ResidualSeries>& series, const LinearFit& fit,
-                                    double weight, const Eigen::VectorXd& prior_inverse_deviations,
-                                    const ErrorCovariance& errors, double variance) {
-  const Eigen::MatrixXd inverse = posterior(fit, weight, prior_inverse_deviations);
+                                    double weight, const ErrorCovariance& errors, double variance) {
+  const Eigen::MatrixXd inverse = posterior(fit, weight);
   Eigen::MatrixXd scatter = covariance_products(series, fit.design, errors);
   scatter *= variance / (weight * weight);
-  scatter.diagonal() += prior_inverse_deviations.cwiseAbs2();
+  scatter.diagonal() += fit.prior_inverse_deviations.cwiseAbs2();
   return inverse * scatter * inverse;
 }
 
 VarianceEstimate variance_under(const std::vector<ResidualSeries>& series,
                                 const ErrorCovariance& errors, Eigen::Index frames) {
-  const LinearFit fit = linear_fit(series, errors, frames);
+  const LinearFit fit = linear_fit(series, errors, frames, {});
   const Eigen::MatrixXd basis = basis_of(fit.design);
   const auto freedom = static_cast<double>(fit.freedom - basis.cols());
   const Eigen::VectorXd left = fit.residual - basis * (basis.transpose() * fit.residual).eval();
   return {left.squaredNorm() / std::max(1.0, freedom), freedom};
 }
 
-std::vector<bool> undetermined_numbers(const LinearFit& fit, double variance,
-                                       const Eigen::VectorXd& prior_inverse_deviations) {
-  const Eigen::MatrixXd information = information_of(fit, variance, prior_inverse_deviations);
+std::vector<bool> undetermined_numbers(const LinearFit& fit, double variance) {
+  const Eigen::MatrixXd information = information_of(fit, variance);
   const Eigen::VectorXd deviations =
       information.diagonal().unaryExpr([](double x) { return x > 0 ? 1 / std::sqrt(x) : 0.0; });
   const Eigen::MatrixXd scaled = deviations.asDiagonal() * information * deviations.asDiagonal();
   const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> eigen(scaled);
-  std::vector<bool> result(static_cast<std::size_t>(prior_inverse_deviations.size()), false);
-  for (Eigen::Index k = 0; k < prior_inverse_deviations.size(); ++k) {
+  std::vector<bool> result(static_cast<std::size_t>(information.rows()), false);
+  for (Eigen::Index k = 0; k < information.rows(); ++k) {
     if (eigen.eigenvalues()[k] > information_tolerance) continue;
-    for (Eigen::Index i = 0; i < prior_inverse_deviations.size(); ++i) {
+    for (Eigen::Index i = 0; i < information.rows(); ++i) {
       if (std::abs(eigen.eigenvectors()(i, k)) > least_part) {
         result[static_cast<std::size_t>(i)] = true;
       }
@@ -156,12 +147,15 @@ double GaussNewton::deviance() const {
   return linear_.residual.squaredNorm() / weight() + penalty(values_);
 }
 
+LinearFit GaussNewton::linearised(const std::vector<ResidualSeries>& series) const {
+  return linear_fit(series, {}, rods_.measured().frame_columns(), prior_inverse_deviations_);
+}
+
 double GaussNewton::deviance_at(const Eigen::VectorXd& values) {
   const std::optional<std::vector<ResidualSeries>> series =
       rods_.residuals(values, FittedRods::Columns::frames);
   if (!series) return INFINITY;
-  const LinearFit shifted_fit = linear_fit(*series, {}, rods_.measured().frame_columns());
-  return shifted_fit.residual.squaredNorm() / weight() + penalty(values);
+  return linearised(*series).residual.squaredNorm() / weight() + penalty(values);
 }
 
 void GaussNewton::measure_variance() {
@@ -176,9 +170,8 @@ void GaussNewton::measure_variance() {
     variance_ = std::max(floor, sum_of_squares / static_cast<double>(linear_.freedom));
   }
   // A number that is determined by its prior does not reduce the degrees of freedom.
-  const Eigen::VectorXd kept = posterior(linear_, weight(), prior_inverse_deviations_)
-                                   .diagonal()
-                                   .cwiseProduct(prior_inverse_deviations_.cwiseAbs2());
+  const Eigen::VectorXd kept =
+      posterior(linear_, weight()).diagonal().cwiseProduct(prior_inverse_deviations_.cwiseAbs2());
   freedom_ = static_cast<double>(linear_.freedom - prior_inverse_deviations_.size()) + kept.sum();
   if (!(freedom_ >= 1)) {
     throw InputError(
@@ -196,9 +189,9 @@ bool GaussNewton::descend() {
     if (!series) return false;
     series_ = std::move(*series);
     here_ = rods_.rods();
-    linear_ = linear_fit(series_, {}, rods_.measured().frame_columns());
+    linear_ = linearised(series_);
     measure_variance();
-    posterior_ = posterior(linear_, weight(), prior_inverse_deviations_);
+    posterior_ = posterior(linear_, weight());
     // All results must belong to the final values, so no step is made after the last linearisation.
     if (i == most_steps) return true;
     Eigen::VectorXd step = next_step();
@@ -235,8 +228,7 @@ double GaussNewton::last_step(double first_deviation) const {
 /// others with it.
 Eigen::VectorXd GaussNewton::next_step() const {
   const std::vector<Unknown>& unknowns = rods_.unknowns();
-  const Eigen::VectorXd down =
-      log_posterior_gradient(linear_, weight(), prior_inverse_deviations_, values_);
+  const Eigen::VectorXd down = log_posterior_gradient(linear_, weight(), values_);
   Eigen::VectorXd step = posterior_ * down;
   const double longest = unknowns.front().longest_step;
   const double bounded = std::clamp(values_[0] + std::clamp(step[0], -longest, longest),
@@ -244,8 +236,7 @@ Eigen::VectorXd GaussNewton::next_step() const {
   if (values_[0] + step[0] != bounded) {
     step[0] = bounded - values_[0];
     if (step.size() > 1) {
-      step.tail(step.size() - 1) =
-          step_of_others(linear_, weight(), prior_inverse_deviations_, down, step[0]);
+      step.tail(step.size() - 1) = step_of_others(linear_, weight(), down, step[0]);
     }
   }
   double share = 1;
@@ -268,8 +259,7 @@ double GaussNewton::marginal_slope() {
     const std::optional<std::vector<ResidualSeries>> series =
         rods_.residuals(conditional_optimum(values_[0] + side * offset), FittedRods::Columns::all);
     if (!series) return 0;
-    const LinearFit shifted_fit = linear_fit(*series, {}, rods_.measured().frame_columns());
-    difference += side * log_determinant(shifted_fit, weight(), prior_inverse_deviations_);
+    difference += side * log_determinant(linearised(*series), weight());
   }
   return difference / (2 * offset);
 }
@@ -288,15 +278,13 @@ double GaussNewton::profile(double first) {
     const std::optional<std::vector<ResidualSeries>> series =
         rods_.residuals(values, FittedRods::Columns::frames);
     if (!series) break;
-    chord.residual = linear_fit(*series, {}, rods_.measured().frame_columns()).residual;
+    chord.residual = linearised(*series).residual;
     const double here = chord.residual.squaredNorm() / weight() + penalty(values);
     if (!(here < least)) break;
     least = here;
     if (others == 0) break;
-    const Eigen::VectorXd down =
-        log_posterior_gradient(chord, weight(), prior_inverse_deviations_, values);
-    const Eigen::VectorXd step =
-        step_of_others(chord, weight(), prior_inverse_deviations_, down, 0);
+    const Eigen::VectorXd down = log_posterior_gradient(chord, weight(), values);
+    const Eigen::VectorXd step = step_of_others(chord, weight(), down, 0);
     if (step.dot(down.tail(others)) < deviance_tolerance) break;
     values.tail(others) += step;
   }

@@ -14,26 +14,24 @@ namespace dlo::compare {
 struct LinearFit {
   Eigen::MatrixXd design;    ///< innovations by the numbers, minus the part that frames explain
   Eigen::VectorXd residual;  ///< innovations of points minus rod, with the frames' part removed
+  /// 1 over the prior standard deviation of each number about zero
+  Eigen::VectorXd prior_inverse_deviations;
   Eigen::Index freedom = 0;  ///< number of rows minus rank of the frames' columns
 };
 
 /// Returns the covariance of the numbers after the fit. For numbers that are undetermined_numbers()
 /// it is that of the pseudoinverse, which is no variance.
 /// @param variance  of the errors
-/// @param prior_inverse_deviations  1 over the prior standard deviation of each number about zero
-[[nodiscard]] Eigen::MatrixXd posterior(const LinearFit& fit, double variance,
-                                        const Eigen::VectorXd& prior_inverse_deviations);
+[[nodiscard]] Eigen::MatrixXd posterior(const LinearFit& fit, double variance);
 
 /// Returns the covariance of the numbers after a least squares fit that assumes independent errors,
 /// if the errors have another covariance (sandwich estimator).
 /// @param series    residual series of the fit
 /// @param weight    variance by which the squares of the fit were divided
-/// @param prior_inverse_deviations    inverse standard deviations of the prior
 /// @param errors    covariance of the errors, divided by `variance`
 /// @param variance  factor on `errors`
 [[nodiscard]] Eigen::MatrixXd sandwich_covariance(const std::vector<ResidualSeries>& series,
                                                   const LinearFit& fit, double weight,
-                                                  const Eigen::VectorXd& prior_inverse_deviations,
                                                   const ErrorCovariance& errors, double variance);
 
 /// Variance of errors of a given correlation, estimated from the residuals of generalised least
@@ -47,8 +45,7 @@ struct VarianceEstimate {
 
 /// Returns for each number whether neither the points nor priors determine it, alone or in
 /// combination with others. The variance of such a number is infinite.
-[[nodiscard]] std::vector<bool> undetermined_numbers(
-    const LinearFit& fit, double variance, const Eigen::VectorXd& prior_inverse_deviations);
+[[nodiscard]] std::vector<bool> undetermined_numbers(const LinearFit& fit, double variance);
 
 /// Options of the Gauss-Newton iteration.
 struct GaussNewtonOptions {
@@ -94,10 +91,6 @@ class GaussNewton {
   [[nodiscard]] double weight() const { return given_weight_.value_or(variance_); }
   /// Returns the degrees of freedom of the residuals.
   [[nodiscard]] double freedom() const { return freedom_; }
-  /// Returns 1 over the prior standard deviations, see posterior().
-  [[nodiscard]] const Eigen::VectorXd& prior_inverse_deviations() const {
-    return prior_inverse_deviations_;
-  }
   /// Returns the sum of squares divided by the weight, plus the priors' terms.
   [[nodiscard]] double deviance() const;
 
@@ -119,6 +112,7 @@ class GaussNewton {
 
  private:
   [[nodiscard]] double penalty(const Eigen::VectorXd& values) const;
+  [[nodiscard]] LinearFit linearised(const std::vector<ResidualSeries>& series) const;
   [[nodiscard]] double deviance_at(const Eigen::VectorXd& values);
   void measure_variance();
   [[nodiscard]] Eigen::VectorXd next_step() const;

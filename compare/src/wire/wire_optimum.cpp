@@ -61,10 +61,11 @@ WireErrors estimate_errors(const GaussNewton& fit, Eigen::Index frames,
 /// many independent ones.
 double effective_variance(const WireErrors& errors, const GaussNewton& fit) {
   if (!errors.are_correlated()) return errors.variance;
-  const Eigen::VectorXd nothing = Eigen::VectorXd::Zero(fit.prior_inverse_deviations().size());
-  const double independent = posterior(fit.linear(), 1, nothing)(0, 0);
+  LinearFit linear = fit.linear();
+  linear.prior_inverse_deviations.setZero();
+  const double independent = posterior(linear, 1)(0, 0);
   const double correlated =
-      sandwich_covariance(fit.series(), fit.linear(), 1, nothing, errors.correlation, 1)(0, 0);
+      sandwich_covariance(fit.series(), linear, 1, errors.correlation, 1)(0, 0);
   return errors.variance * std::max(1.0, correlated / independent);
 }
 
@@ -78,8 +79,7 @@ Eigen::MatrixXd covariance_of_numbers(const WireErrors& errors, const GaussNewto
     const double variance =
         noise ? errors.variance : variance_under(fit.series(), likely.covariance, frames).variance;
     sum += likely.weight * sandwich_covariance(fit.series(), fit.linear(), fit.weight(),
-                                               fit.prior_inverse_deviations(), likely.covariance,
-                                               variance);
+                                               likely.covariance, variance);
   }
   return sum;
 }
@@ -153,14 +153,13 @@ void WireProblem::descend(GaussNewton& fit) const {
 WireOptimum::WireOptimum(const WireProblem& problem, FittedRods& rods, const Eigen::VectorXd& start)
     : problem_(problem), rods_(rods), fit_(std::in_place, rods, start, problem.steps()) {
   descend();
-  for (int i = 0; i < most_weights && !fit_->prior_inverse_deviations().isZero(); ++i) {
+  for (int i = 0; i < most_weights && !fit_->linear().prior_inverse_deviations.isZero(); ++i) {
     const double weight = effective_variance(errors_, *fit_);
     if (std::abs(weight / fit_->weight() - 1) < weight_tolerance) break;
     fit_->set_data_variance(weight);
     descend();
   }
-  undetermined_ =
-      undetermined_numbers(fit_->linear(), fit_->weight(), fit_->prior_inverse_deviations());
+  undetermined_ = undetermined_numbers(fit_->linear(), fit_->weight());
   if (!is_undetermined(0)) move_to_most_likely_modulus();
   here_ = fit_->rods();
   covariance_ = covariance_of_numbers(errors_, *fit_, problem.measured.frame_columns(),
@@ -196,8 +195,7 @@ double WireOptimum::quantile() const {
 }
 
 double WireOptimum::correlated_widening() const {
-  const double independent =
-      posterior(fit_->linear(), fit_->variance(), fit_->prior_inverse_deviations())(0, 0);
+  const double independent = posterior(fit_->linear(), fit_->variance())(0, 0);
   const double alone = interval_quantile(problem_.options.noise, fit_->freedom());
   return std::sqrt(covariance_(0, 0) / independent) * quantile() / alone;
 }

@@ -86,23 +86,6 @@ TEST(MaterialFit, TheTimeLimitEndsItWithItsName) {
                       {"--time-limit"}));
 }
 
-// The arc lengths of the shape are wrong. Its residuals are systematic, so the interval has to
-// include that of a curved wire, whose fit takes most of the time.
-TEST(MaterialFit, ATimeLimitThatLeavesOutAnAlternativeLeavesNoResult) {
-  const Scene scene = load_scene(std::string(DLO_DATA) + "/scenes/cable.toml");
-  MeasuredShape shape = load_shape(std::string(DLO_DATA) + "/shapes/cable.csv");
-  shape.arc_length = {0.1, 0.25, 0.4, 0.55, 0.7, 0.85, 1};
-  FittedValue E;
-  for (double limit = 0.01; !E.low; limit *= 4) {
-    try {
-      E = calibrate({scene}, {shape}, {.solve = {.time_limit = limit}}).fit.youngs_modulus;
-    } catch (const ConvergenceError&) {
-    }
-  }
-  EXPECT_FALSE(E.value);
-  EXPECT_LT(*E.low, 2e7);
-}
-
 TEST(MaterialFit, APerfectShapeGivesItsModulusFromFarAway) {
   const Scene truth = heavy_scene(5, 0);
   Scene scene = with_modulus_times(300, truth);
