@@ -39,8 +39,8 @@ struct CalibratedRod {
   Eigen::Vector3d camera_tilt = Eigen::Vector3d::Zero();
 };
 
-/// Returns a scene with the calibrated quantities in place of its own, except damping and drag,
-/// which a scene does not have.
+/// Returns a scene with the calibrated quantities in place of its own, except damping and drag of
+/// motions, which a scene does not have.
 /// @throws InputError if the scene is given by E and the calibration by EI or the reverse, if it
 /// lacks a corrected gripper, or with `camera_tilt` if more than weight acts on its rod or
 /// something moves

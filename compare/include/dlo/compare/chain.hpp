@@ -6,8 +6,8 @@
 
 namespace dlo::compare {
 
-/// Finds the polygon of minimal energy. With one clamp at an end, forces in a plane and no obstacle
-/// its segments are rigid, unless that polygon is unstable out of the plane. Else they have the
+/// Finds the polygon of minimal energy. With one clamp at an end, forces in a plane with it and no
+/// obstacle in reach its segments are rigid, unless that polygon is unstable. Else they have the
 /// force model's c_c, and the lowest of the shapes from all starts is returned.
 /// @throws InputError; ConvergenceError, also if a segment differs from its rest length by more
 /// than largest_strain(); the message then recommends more points
@@ -17,7 +17,7 @@ namespace dlo::compare {
 /// Minimises the energy of the polygon with elastic segments downhill from a shape; c_c is that of
 /// the settings. For the paper's law between unequal segments see energy_model::PolygonProblem.
 /// @param start  any polygon of the scene's rod
-/// @throws InputError, ConvergenceError
+/// @throws InputError, also for settings with a joint_law; ConvergenceError
 [[nodiscard]] Shape chain_from(const Scene& scene, const ForceModelSettings& settings,
                                const Shape& start, const SolveOptions& options = {});
 

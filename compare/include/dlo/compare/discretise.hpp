@@ -40,7 +40,7 @@ struct Discretisation {
   force_model::Rod rod;             ///< polygon, forces and grips of the force model
   std::vector<std::size_t> walls;   ///< index in the scene of each obstacle in rod.walls
   std::vector<std::size_t> solids;  ///< index in the scene of each obstacle in rod.solids
-  Eigen::Matrix3Xd weights;         ///< part of rod.loads that is gravity [N]
+  Eigen::Matrix3Xd weights;         ///< part of rod.loads that is the rod's own weight [N]
   /// Start shapes of a simulation [m]: a straight one for a single gripper; two for several
   /// grippers, with the slack along and against the load.
   std::vector<Eigen::Matrix3Xd> starts;
@@ -82,9 +82,9 @@ struct Discretisation {
 /// A joint represents the rod between the middles of its segments. Its EI is that of the mean 1/EI,
 /// also across an end of a section (c_b of the law `paper` is proportional to it), and its angle at
 /// rest is the natural curvature times its length. The natural curvature is neglected by the law
-/// `paper`, and if the rod is not in its plane. GJ, used if the clamps twist the rod and the law is
-/// hooke, is likewise that of the mean 1/GJ. The clamps' frames are not set here, because whole
-/// turns are counted from the untwisted equilibrium.
+/// `paper`, and if the rod is not in its plane. GJ, used if the clamps twist a naturally straight
+/// rod and the law is hooke, is likewise that of the mean 1/GJ. The clamps' frames are not set
+/// here, because whole turns are counted from the untwisted equilibrium.
 ///
 /// A half-space becomes a wall of the force model, which acts on points. Each point has the
 /// stiffness L times the obstacle's, since walls have one stiffness for all points (the last point
@@ -96,10 +96,10 @@ struct Discretisation {
 /// @throws InputError if there are too few points for the grippers (with the number needed), two
 /// grippers hold the same arc length, grippers, or the segments that they hold, are further apart
 /// than the rod between them, or a single segment between two held points does not fit (with the
-/// number of points that do), a joint would rotate by 3 rad or more at rest or by pi or more at the
-/// design curvature, or the scene or the settings have what no polygon has: two bending
-/// stiffnesses, couples, loads without a potential, a `joint_law`, natural curvature in a plane
-/// other than z = 0
+/// number of points that do), a joint would rotate by 3 rad or more at rest, or by pi or more or
+/// not at all at the design curvature, or the scene or the settings have what no polygon has: two
+/// bending stiffnesses, couples, loads without a potential, a `joint_law`, natural curvature in a
+/// plane other than z = 0
 [[nodiscard]] Discretisation discretise(const Scene& scene, const ForceModelSettings& settings);
 
 /// Replaces the walls and solids of a discretisation by the given obstacles of a scene.

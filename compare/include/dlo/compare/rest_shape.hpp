@@ -24,15 +24,15 @@ struct RestShape {
   std::string file;          ///< file of the points, for messages
   long points = 0;           ///< number of points
   std::vector<Arc> arcs;     ///< one or more, the last one ends at the rod's length
-  double largest_error = 0;  ///< largest distance of a point from the arcs [m]
-  double rms_error = 0;      ///< RMS distance of all points from the arcs [m]
+  double largest_error = 0;  ///< largest distance of a point from the arcs at its arc length [m]
+  double rms_error = 0;      ///< RMS distance of all points from the arcs at their arc lengths [m]
   /// Largest angle between a given d1 and that of the arcs [rad]; empty without frames.
   std::optional<double> largest_angle = std::nullopt;
   /// Start of the arcs, in the axes of the points: a rod that is held there lies on them [m].
   Eigen::Vector3d begin = Eigen::Vector3d::Zero();
   /// Frame at the start of the arcs, columns d1, d2, t. Without given frames d2 is the normal of
-  /// the points' plane, or of the plane of best fit minus its component along t, on the side of +z
-  /// (+y, +x).
+  /// the points' plane, on the side of +z (+y, +x). If the points are not planar, the fit only
+  /// starts with d2 near the normal of the plane of best fit.
   Eigen::Matrix3d first_frame = Eigen::Matrix3d::Identity();
 
   /// Compares all fields.
@@ -44,11 +44,12 @@ inline constexpr int most_rest_arcs = 32;
 
 /// Fits arcs to points, at most 150 of them, by nonlinear least squares in strains and pose. Of 1,
 /// 2, 3, 4, 6, 8, 12, 16, 24 and 32 arcs it uses the number with the least value of Schwarz's
-/// information criterion. Larger numbers are not tried after three that are worse, or after one
-/// that agrees with the points within about 1e-7 of the length. Points
-/// within 1e-6 of the length from a plane count as planar. Arc lengths are the file's if it has
-/// any, else those of the nearest points; both are scaled to the rod's length. Of given frames only
-/// d1 is used; in the points' plane it determines the side of d2.
+/// information criterion. Larger numbers are not tried after three in a row that are worse, after
+/// one that agrees with the points within about 1e-7 of the length, or with fewer than two
+/// residuals per parameter. Points within 1e-6 of the length from a plane count as planar, unless a
+/// given d1 leaves the plane. Arc lengths are the file's if it has any (decreasing ones reverse the
+/// points), else those of the nearest points; both are scaled to the rod's length. Of given frames
+/// only d1 is used; in the points' plane it determines the side of d2.
 /// @param length  of the rod [m]
 /// @throws InputError if the length of the points' curve differs by more than 5 %, there are fewer
 /// than 5 points, or d1 rotates by a right angle or more between fitted neighbours

@@ -305,11 +305,11 @@ struct Scene {
   /// Returns the scene with clamps that let the rod rotate about their directions, except for the
   /// first clamp of a rod with material directors.
   [[nodiscard]] Scene without_twist() const;
-  /// Returns the unit normal of the plane that contains grips, forces and obstacles in reach; any
-  /// one of several. Empty if there is none, if clamps hold twist or a load that follows the rod
-  /// leaves the plane, which bends the rod out of it, or if the natural curvature is about another
-  /// axis, the plane is oblique to the principal axes of the cross-section, or a rod with material
-  /// directors is naturally twisted.
+  /// Returns the unit normal of the plane that contains grips and forces, is perpendicular to
+  /// couples and is a plane of symmetry of obstacles in reach; any one of several. Empty if there
+  /// is none, if clamps hold twist or a load that follows the rod leaves the plane, which bends the
+  /// rod out of it, or if the natural curvature is about another axis, the plane is oblique to the
+  /// principal axes of the cross-section, or a curved or not round rod is naturally twisted.
   [[nodiscard]] std::optional<Eigen::Vector3d> plane_normal() const;
   /// Whether plane_normal() exists.
   [[nodiscard]] bool planar() const { return plane_normal().has_value(); }

@@ -32,11 +32,11 @@ struct Choices<Model> {
 
 /// Limits and options of the solvers.
 struct SolveOptions {
-  int terms = 0;  ///< curvature coefficients of the energy model, 0: as many as needed
-  int max_evaluations = 20000;  ///< largest number of evaluations of a minimiser
-  long max_steps = 20'000'000;  ///< largest number of steps of the force model
+  int terms = 0;  ///< energy_model::EnergyOptions::terms of the energy model, 0: as many as needed
+  int max_evaluations = 20000;  ///< largest number of evaluations of one descent of a minimiser
+  long max_steps = 20'000'000;  ///< largest number of steps of one simulation of the force model
   double time_limit = 20;       ///< limit of each solve of a model [s], > 0
-  /// the force model is at rest below it [-], divided by the rod length
+  /// RMS distance from the rest shape below which the force model is at rest, divided by the length
   double rest_tolerance = 1e-7;
   /// Whether solvers return a shape whose status is `not_verified` or `near_singular`, to show it
   /// with that status. No conclusion may be drawn from such a shape.
@@ -44,8 +44,8 @@ struct SolveOptions {
   /// Equilibrium of a similar scene that is followed, instead of a search for the lowest; for the
   /// energy model, and for exact if the rod stretches.
   const energy_model::Equilibrium* start = nullptr;
-  /// Neglected effects are reported if they change the shape by more than this share of the length,
-  /// or the largest tension by more than this share of it [-], > 0.
+  /// Stretch is counted, or reported as neglected, if it changes the shape by more than this share
+  /// of the length, or the largest tension by more than this share of it [-], > 0.
   double target = 1e-3;
 };
 
@@ -106,10 +106,10 @@ struct Solution {
   /// solve_near() with `accept_unverified`, also `saddle`.
   energy_model::SolveStatus status = energy_model::SolveStatus::converged;
   std::string message;     ///< how the solver terminated
-  double penetration = 0;  ///< Equilibrium::penetration of the energy model [m]
+  double penetration = 0;  ///< Equilibrium::penetration, of energy and exact [m]
   Shape shape;             ///< points of the rod
-  /// Curvature at the shape's points [1/m], from solve() and solve_all(); for a polygon the
-  /// curvature of its joints.
+  /// Curvature at the shape's points [1/m], of energy and exact; from solve() also of a polygon's
+  /// joints.
   std::vector<double> curvature;
   /// Tension at the shape's points [N], of energy and exact, positive if the rod is pulled. At a
   /// gripper or load inside the rod it is the value of the side towards l. Empty if a compliant
@@ -127,15 +127,15 @@ struct Solution {
   std::vector<Linking> linking;
   /// Effects that the scene has and the model neglects: "twist", "natural curvature", "friction"
   /// (if the rod touches an obstacle with friction; in Comparison if either model does), "stretch"
-  /// (of energy and exact, if solve() finds that it matters; of chain with rigid segments, if the
-  /// scene counts stretch).
+  /// (of energy and exact, if its estimated effect exceeds SolveOptions::target; of chain with
+  /// rigid segments, if the scene counts stretch).
   std::vector<std::string> neglected;
   /// Estimated effect of stretch, of energy and exact, from solve(), solve_near() and solve_all().
   /// It refers to the shape without stretch, also if the estimate led to a solution with stretch.
   StretchEffect stretch;
   /// decision on stretch, from solve(), solve_near() and solve_all()
   StretchDecision stretch_decision = StretchDecision::given;
-  /// Smallest eigenvalue of the reduced Hessian divided by EI/l, if a search computed it; else NaN.
+  /// Equilibrium::smallest_eigenvalue, of energy and exact; else NaN.
   double smallest_eigenvalue = std::numeric_limits<double>::quiet_NaN();
   /// Equilibrium::stable_energies of the energy model [J], from solve() and solve_all().
   std::vector<double> stable_energies;
@@ -145,13 +145,13 @@ struct Solution {
   int neutral_directions = 0;
   long evaluations = 0;   ///< evaluations of a minimiser, or shots of exact
   long steps = 0;         ///< steps of the force model
-  int terms = 0;          ///< curvature coefficients of the energy model
+  int terms = 0;          ///< Equilibrium::terms of the energy model
   double seconds = 0;     ///< wall time of the solver
   Parameters parameters;  ///< parameters of chain and force
   double c_F = 0;         ///< c_F of the force model at its last step [m/N]
   double c_h = 0;         ///< c_h of the force model at its last step [-]
-  /// Estimated largest distance of a point from an equilibrium of the model [m]: of energy
-  /// Equilibrium's estimate, of force the distance to rest. NaN: unknown.
+  /// Estimated distance of the points from an equilibrium of the model [m]: of energy
+  /// Equilibrium::error_estimate times l, of force a bound of the RMS distance. NaN: unknown.
   double error_estimate = std::numeric_limits<double>::quiet_NaN();
   Eigen::Matrix3Xd to_rest;  ///< Newton's step to rest from each point of the force model [m]
 };

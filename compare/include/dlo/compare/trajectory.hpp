@@ -52,7 +52,7 @@ class Trajectory {
   Trajectory() = default;
   /// Constructs a path through poses.
   /// @param poses  one or more, by increasing time; either all or none has a direction, likewise a
-  /// roll, and no direction is opposite to the one before
+  /// roll. Directions need not be unit vectors; none is zero or opposite to the one before
   /// @throws std::invalid_argument that names the pose if this does not hold, or if a number is not
   /// finite
   explicit Trajectory(std::vector<Pose> poses);
