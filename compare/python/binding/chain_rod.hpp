@@ -28,7 +28,7 @@ struct ChainRod {
                                  std::optional<double> grip_stiffness);
 
 /// Returns the targets of a grip after its gripper has moved. @param direction  empty: unchanged
-/// @throws compare::InputError if there is no such gripper or direction
+/// @throws compare::InputError if there is no such gripper, a pin gets a direction, or it is zero
 [[nodiscard]] Eigen::Matrix3Xd moved_targets(const force_model::Rod& rod, std::size_t gripper,
                                              const Eigen::Vector3d& position,
                                              const std::optional<Eigen::Vector3d>& direction);

@@ -64,7 +64,7 @@ struct Result {
   [[nodiscard]] virtual std::string text() const = 0;
   /// Returns the document of the command with `--format json`.
   [[nodiscard]] virtual std::string json() const = 0;
-  /// Returns the picture of the command, of a result with a shape.
+  /// Returns the picture of the command; empty for a result without a shape.
   [[nodiscard]] virtual compare::Drawing drawing() const { return {}; }
   /// Returns the part of the picture that Python draws.
   /// @param in_space  whether it is drawn in space; empty: unless it lies in a plane

@@ -137,12 +137,12 @@ def check(
     whether causes are searched for if the verdict is "fail", which takes longer than all else. materials, calibrated:
     as in solve().
 
-    With motion instead of points: returns a MotionCheck of a scene that moves. motion: rows of time [s], arc length,
-    x, y, z [m], shape (R, 5), or the name of a CSV file of these. dynamic: whether the rod has inertia, with damping
-    [s], drag [N s/m^2] and quadratic_drag [N s^2/m^3] (None: of calibrated, else 0), or is at rest at every time.
-    begin: start time of the rod's motion [s]; None: that of a recording in track.start, else the first time of motion.
-    frame_rate: frame rate of the rod [Hz]; None: as needed. explain: whether causes are searched for, whatever the
-    verdict is.
+    With motion instead of points: returns a MotionCheck of a scene that moves. motion: rows of time [s], arc length, x,
+    y, z [m], shape (R, 5), or the name of a CSV file of these. tolerance: no share of the deflection. dynamic: whether
+    the rod has inertia, with damping [s], drag [N s/m^2] and quadratic_drag [N s^2/m^3] (None: of calibrated, else 0),
+    or is at rest at every time. begin: start time of the rod's motion [s]; None: that of a recording in track.start,
+    else the first time of motion. frame_rate: frame rate of the rod [Hz]; None: as needed. explain: whether causes are
+    searched for, whatever the verdict is.
     """
     what = locals()
     what["tolerance"] = None if tolerance is None else str(tolerance)

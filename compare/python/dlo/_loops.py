@@ -45,10 +45,11 @@ class ForceModel(_dlo.ForceModel):
 
 
 class Batch(_dlo.Batch):
-    """Steps many rods at once, eight in lockstep, on several threads: for tables of simulations.
+    """Steps many rods at once, in vectorised blocks of eight, on several threads: for tables of simulations.
 
-    Scenes must have the same force_model.points, law and stepper, and start like ForceModel. Steppers with velocities,
-    implicit steps and grippers that hold the rod's frame against twist are refused. threads: 0: all cores.
+    Scenes must have the same force_model.points, law and stepper, and all or none natural curvature; they start like
+    ForceModel. Steppers verlet and implicit, and grippers that hold the rod's frame against twist, are refused.
+    threads: 0: all cores.
     """
 
     def __init__(self, scenes: Iterable[SceneLike], *, threads: int = 0) -> None:

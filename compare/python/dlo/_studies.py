@@ -111,7 +111,7 @@ def regress(
     """Compares shape errors with a baseline under version control: `dlo regress`.
 
     baseline: name of its file. update: whether it is replaced by these scenes' errors alone. model: "force" or "chain".
-    An error may change by the fraction relative of the baseline's plus the fraction absolute of the rod's length.
+    An error may grow by the fraction relative of the baseline's plus the fraction absolute of the rod's length.
     tolerance: instead of absolute, "1%" of the length or "5% of deflection" (of a stiff rod, by its weight and loads).
     programs: other programs, "NAME=COMMAND" as in the command's --with. time, materials, calibrated: as in solve().
 
@@ -144,7 +144,7 @@ def suite(
     It is ended between two instructions of Python, after the current call of C. state: a folder that keeps finished
     runs by name, scene and N; they are not run again. Use another folder if the function has changed. baseline: a file
     as for regress(); the ScoreCard then passes or fails. update: whether the errors of these scenes are written into
-    it. An error may change by the fraction relative of the baseline's plus the fraction absolute of the rod's length.
+    it. An error may grow by the fraction relative of the baseline's plus the fraction absolute of the rod's length.
     """
     what = locals()
     if not callable(run):

@@ -3,8 +3,8 @@
 #
 # A cable of MuJoCo's plugin `mujoco.elasticity.cable` is a chain of bodies. What it needs is an
 # array of shape (M, 3) in metres: `data.xpos` of all its bodies, the last included, and behind them
-# the end of the last body. Here a chain of 30
-# points stands in for it, with a Young's modulus of which somebody has mistyped the exponent.
+# the end of the last body. Here a chain of 30 points stands in for it, with a Young's modulus of
+# which somebody has mistyped the exponent.
 
 # %%
 import numpy
@@ -20,7 +20,7 @@ cable = dlo.Scene(
 mistyped = cable.replace(
     material={"youngs_modulus": "12 MPa", "density": 1150}, force_model={"points": 30}
 )
-xpos = dlo.solve(mistyped, model="chain").points  # yours: data.xpos[first:last]
+xpos = dlo.solve(mistyped, model="chain").points  # yours: data.xpos of the bodies, and the end of the last one
 
 # %% [markdown]
 # `check` compares them with the shape that the material would take, and prints the most likely cause of a difference.

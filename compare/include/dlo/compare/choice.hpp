@@ -32,7 +32,7 @@ concept Chosen = requires {
 /// Returns "a, b or c", for help.
 [[nodiscard]] std::string one_of(const std::vector<std::string>& names);
 
-/// Returns the name of a value in files and options.
+/// Returns the name of a value in files and options; empty if the table lacks the value.
 template <Chosen Value>
 [[nodiscard]] constexpr const char* to_string(Value value) {
   for (const auto& choice : Choices<Value>::all) {

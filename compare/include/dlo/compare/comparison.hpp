@@ -42,7 +42,7 @@ struct Comparison {
   /// searched or the reference is not verified.
   EffectiveModulus effective_modulus;
   /// RMS deviation that remains at E*, divided by the RMS displacement of the reference from the
-  /// straight rod; NaN without a straight rod.
+  /// straight rod; NaN without a straight rod or without E*.
   double residual_over_displacement = 0;
   Budget budget;                ///< causes of the deviation
   double energy_seconds = 0;    ///< time of the energy model's solver [s]

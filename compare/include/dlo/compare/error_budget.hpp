@@ -10,7 +10,7 @@ namespace dlo::compare {
 struct BudgetPart {
   double rms_m = 0;  ///< RMS along the rod [m]
   /// Signed contribution to the total: <part, total> / <total, total>, the product an integral over
-  /// the arc length [-]. The shares of all parts and of the remainder add up to 1.
+  /// the arc length [-]. The shares of all parts and of the remainder add up to 1; 0 if total is 0.
   double share = 0;
 };
 

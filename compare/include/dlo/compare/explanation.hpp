@@ -32,20 +32,21 @@ struct Choices<ExplanationKind> {
 /// A possible error of a shape, or of the scene that it is compared with.
 struct Explanation {
   std::string cause;  ///< a clause: "gripper 1 is rotated by 5 deg"
-  double rms_m = 0;   ///< RMS deviation of the whole rod if the cause is right
-  int numbers = 0;    ///< number of quantities that were fitted to the shape
+  /// RMS deviation of the whole rod if the cause is right, of a chain or a part that of the points.
+  double rms_m = 0;
+  int numbers = 0;  ///< number of quantities that were fitted to the shape
   ExplanationKind kind = ExplanationKind::scene;  ///< subject of the explanation
-  /// Largest deviation of a point from the chain; only if the cause is a discretisation.
-  double max_m = 0;
+  double max_m = 0;  ///< largest deviation from a chain whose springs are not fitted; else 0
 };
 
 /// Searches for a cause that explains a shape's deviation. Causes of the file, one or several at a
-/// time: its unit, its axes, its origin, points off the rod, a scaling, noise. Causes of its
-/// simulator: a chain of hinges instead of a rod, an unstable equilibrium. Causes of the scene, one
-/// at a time: stiffness or weight, size and direction of gravity, the length, position and
-/// direction of a gripper, a pin that is a clamp or the reverse, natural curvature, twist. Those of
-/// the scene are fitted to the shape, from the compared equilibrium, by Gauss-Newton steps whose
-/// derivatives are differences between solved rods.
+/// time: noise and, if its frame is known, its unit, its axes, its origin, the order of its points,
+/// points off the rod, a scaling, a rotation. Causes of its simulator: a chain of hinges instead of
+/// a rod, an unstable equilibrium. Causes of the scene, one at a time: stiffness or weight, size
+/// and direction of gravity, the length, position and direction of a gripper, a pin that is a clamp
+/// or the reverse, natural curvature, twist. Those of the scene, except the length, are fitted to
+/// the shape, from the compared equilibrium, by Gauss-Newton steps whose derivatives are
+/// differences between solved rods. The search ends at options.solve.time_limit.
 /// @param check  result for the same scene and shape
 /// @return causes that leave at most half of the deviation, the best first: a cause with more
 /// numbers precedes another one only if each additional number halves the remaining deviation;
@@ -84,9 +85,8 @@ struct ChainJudgement {
                                             const ShapeTolerance& tolerance);
 
 /// Adds the best explanation to the reason of a verdict that is not `pass`; the verdict itself is
-/// unchanged.
-/// The explanation comes first if it is a cause in the file that brings the shape within the
-/// tolerance, and the shape is more than ten tolerances away.
+/// unchanged. The explanation comes first if it is a cause in the file that brings the RMS
+/// deviation within the tolerance, and the shape is more than ten tolerances away.
 /// @param explanations  result of explain_shape(), for the same check
 [[nodiscard]] ShapeJudgement with_explanation(ShapeJudgement judgement,
                                               const std::vector<Explanation>& explanations,

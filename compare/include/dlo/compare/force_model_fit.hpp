@@ -18,7 +18,7 @@ enum class StiffnessRule {
   physical,        ///< law hooke: EI, nothing to choose
   formula_21,      ///< law paper: each scene's own c_b by Formula 21
   moment_matched,  ///< law paper: each scene's own c_b, the physical moment at the design curvature
-  fitted,          ///< law paper: the one c_b that minimises the RMS deviation over all scenes
+  fitted,  ///< law paper: the given c_b, else the one that fits all fitted scenes best (RMS)
   fitted_per_scene,  ///< law paper: the c_b of least deviation of each scene; no c_b does better
 };
 
@@ -47,7 +47,7 @@ struct ForceModelFitOptions {
 /// Deviations of all scenes with one rule, in the order of the scenes, hold-out scenes last.
 struct RuleDeviations {
   StiffnessRule rule = StiffnessRule::physical;  ///< how c_b was chosen
-  std::vector<double> c_b;                       ///< [N]; empty for law hooke
+  std::vector<double> c_b;                       ///< [N]; empty for law hooke, NaN if there is none
   /// RMS deviation of the chain, divided by the length; NaN if the rule gives no c_b, infinite if
   /// the chain does not converge with it.
   std::vector<double> rms_over_length;

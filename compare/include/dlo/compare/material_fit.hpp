@@ -42,8 +42,8 @@ namespace dlo::compare {
 /// are found together by Gauss-Newton steps from that E, in least squares. Terms of natural
 /// curvature are added one after the other, so that more of them never fit worse. Prior knowledge
 /// counts as measurements: the tolerances; a standard deviation of 10 / l for each term of natural
-/// curvature; a factor of ten for GJ / EI. If errors are correlated, the
-/// covariance of the numbers is that of least squares under such errors, averaged over all
+/// curvature; a factor of ten for GJ / EI. If errors are correlated, the covariance of the numbers
+/// is that of least squares under such errors, averaged over all
 /// correlations that the residuals leave likely. The ends of the interval of E are where the
 /// profile of the squares, in which the effect of the others is linear about the optimum, has
 /// increased by as much as that variance implies; the interval of GJ is linear altogether. If
@@ -60,8 +60,9 @@ namespace dlo::compare {
 /// other requested quantities are fitted with the scene's E.
 /// @throws InputError if the numbers of scenes and shapes differ, if options contradict each other,
 /// or if there are fewer numbers than unknowns; ConvergenceError if the energy model has no shape
-/// at any modulus, if a shape within the interval is not verified on its obstacles, or if
-/// `solve.time_limit` per scene is exceeded
+/// at any modulus, if a shape within the interval is not verified on its obstacles, if solves ended
+/// at their evaluation limit and E is not identified, or if `solve.time_limit` per scene is
+/// exceeded
 [[nodiscard]] MaterialFit fit_material(const std::vector<Scene>& scenes,
                                        const std::vector<MeasuredShape>& shapes,
                                        const MaterialFitOptions& options = {});

@@ -32,7 +32,7 @@ struct PlannedObstacle {
   /// Lower bound of the distance between the rod's points and the obstacle in any shape [m];
   /// negative: some point might enter it.
   double clearance = 0;
-  bool in_reach = true;  ///< whether some point of the rod could touch it
+  bool in_reach = true;  ///< whether the rod, or a polygon whose segments stretch, could touch it
 };
 
 /// An interval of the rod between clamps that hold its frame.
@@ -60,7 +60,7 @@ struct Neglected {
 struct Plan {
   double gamma = 0;     ///< w l^3 / (EI) [-]
   double target = 0;    ///< PlanOptions::target
-  bool planar = false;  ///< whether grips, loads and obstacles in reach lie in one plane
+  bool planar = false;  ///< Scene::planar()
   bool moving = false;  ///< whether the gripper moves so fast that the rod's inertia matters
   /// Whether the bound of stretch is above a tenth of the target; false if the scene counts
   /// stretch.
@@ -109,9 +109,9 @@ inline constexpr int most_planned_points = 4000;
 ///   A single pin lets the rod swing: no bound.
 /// - Twist: a round, naturally straight rod whose grips leave the twist free has none; nothing is
 ///   neglected. If two clamps hold frames, chain and force neglect twist with the law paper and in
-///   an intrinsically curved rod. No polygon then bounds stretch, shear and its own error, since
-///   the polygon of the response has no twist. Nor does that of a rod with sections, natural
-///   curvature, two bending stiffnesses or couples.
+///   an intrinsically curved or twisted rod. No polygon then bounds stretch, shear and its own
+///   error, since the polygon of the response has no twist. Nor does that of a rod with sections,
+///   natural curvature, two bending stiffnesses or couples.
 /// - Natural curvature: chain and force neglect it in space and with the law paper.
 /// The plan of a scene that cannot be planned in time, or not at all, has no bounds and states why.
 /// @throws std::invalid_argument if an option is out of range

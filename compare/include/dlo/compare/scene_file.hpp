@@ -24,7 +24,7 @@ namespace dlo::compare {
                                const std::vector<Material>& known_materials = materials());
 
 /// Value of a scene's field in code: a number in SI units, a text, such as a number with a unit, or
-/// a list of these.
+/// a list of these. Fields that are true or false cannot be given.
 class SceneValue {
  public:
   /// Converts any arithmetic type, in SI units.

@@ -40,18 +40,18 @@ struct ShapeCheck {
   /// Length of the reference; differs from l only if the rod stretches.
   double stretched_length_m = 0;
   Alignment alignment;  ///< the shape as aligned with the reference
-  /// The stable equilibrium nearest to the shape; the lowest one if none is proven stable.
+  /// The equilibrium nearest to the shape, of the lowest one and those that are proven stable.
   ComparedEquilibrium state;
-  Shape reference;                ///< the energy model at the alignment's arc lengths
-  energy_model::Equilibrium rod;  ///< the whole compared equilibrium
+  Shape reference;  ///< the compared equilibrium at the arc lengths where points are compared
+  energy_model::Equilibrium rod;                      ///< the whole compared equilibrium
   std::vector<energy_model::Equilibrium> other_rods;  ///< the other stable equilibria
   /// Given if the search from the file's points converged to an equilibrium that is not verified.
   std::optional<UnverifiedState> unverified;
   /// Deviation of all points from the reference. The weight of a point is the arc length between
   /// its neighbours' middles, of the rod or of the polyline, whichever is longer. Missing ends of
-  /// the rod do not count. RMS over length refers to the whole rod. For `nearest`, distances are
-  /// from the nearest points in order; if points extend past an end, the file is longer than the
-  /// rod, and the excess is distributed along it. Angle and curvature are then NaN.
+  /// the rod do not count. RMS over length refers to the whole rod. For `nearest`, angle and
+  /// curvature are NaN, and distances are from the nearest points in order; if points extend past
+  /// an end, the length by which the polyline is longer is distributed along it.
   Deviation deviation;
   double length_beyond_ends_m = 0;  ///< `nearest`: length of the file beyond the rod's ends [m]
   /// RMS deviation of the file as the whole rod: a missing end counts with its distance from the

@@ -32,7 +32,7 @@ enum class ShapeVerdict {
   pass,  ///< within the tolerance, and the points determine the rod
   fail,  ///< beyond the tolerance
   /// Within the tolerance, but the points do not determine the rod; or within the tolerance of an
-  /// equilibrium that is not verified.
+  /// equilibrium that is not verified; or a chain that is too coarse to judge (judge_as_chain()).
   undetermined,
 };
 
@@ -62,9 +62,9 @@ struct ShapeJudgement {
 
 /// Compares a shape's deviation with a tolerance, at every point and for every part of the rod.
 /// Parts missing at the ends count with their distance from the outermost point unless the file is
-/// declared to be a part. A part between adjacent points is observed if a smooth curve through the
-/// points determines it within the tolerance; the whole rod has to be observed. A few points on a
-/// short part of the rod lie near it whatever its shape is, so a file that shows less than
+/// declared to be a part. An interval between adjacent points is observed if a smooth curve through
+/// the points determines it within the tolerance; unless the file is a part, all have to be
+/// observed. A few points on a short part lie near any rod, so a file that shows less than
 /// `least_observed_share` never passes. A shape within the tolerance that does not show enough of
 /// the rod is `undetermined`, and so is a shape beyond it that is within the tolerance of
 /// ShapeCheck::unverified. If a file has one measured point (ShapeCheck::measured_points), the
