@@ -25,7 +25,7 @@ class ForceModel(_dlo.ForceModel):
 
     points: initial points [m], shape (N, 3); None: straight from one gripper, between several the polygon's
     rest shape. grip_stiffness: stiffness [N/m] of springs that hold the points instead of rigid grips, as a
-    haptic device feels them; None: rigid. N, law and stepper are those of scene.force_model.
+    haptic device feels them; None: rigid. N, law and stepper (not verlet) are those of scene.force_model.
 
     Threads may share an object: its calls exclude each other, and step() lets other threads run. Calls by a
     signal handler that interrupts step() raise RuntimeError.
