@@ -34,7 +34,7 @@ struct Explanation {
   std::string cause;  ///< a clause: "gripper 1 is rotated by 5 deg"
   /// RMS deviation of the whole rod if the cause is right, of a chain or a part that of the points.
   double rms_m = 0;
-  int numbers = 0;  ///< number of quantities that were fitted to the shape
+  int numbers = 0;  ///< number of fitted quantities, or of errors of the file beyond the first
   ExplanationKind kind = ExplanationKind::scene;  ///< subject of the explanation
   double max_m = 0;  ///< largest deviation from a chain whose springs are not fitted; else 0
 };
