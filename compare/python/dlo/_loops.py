@@ -47,9 +47,8 @@ class ForceModel(_dlo.ForceModel):
 class Batch(_dlo.Batch):
     """Steps many rods at once, in vectorised blocks of eight, on several threads: for tables of simulations.
 
-    Scenes must have the same force_model.points, law and stepper, and all or none natural curvature; they start like
-    ForceModel. Steppers verlet and implicit, and grippers that hold the rod's frame against twist, are refused.
-    threads: 0: all cores.
+    Scenes must have the same force_model.points, law and stepper (not verlet or implicit), all or none natural
+    curvature, and no two grippers that hold the rod's frame. They start like ForceModel. threads: 0: all cores.
     """
 
     def __init__(self, scenes: Iterable[SceneLike], *, threads: int = 0) -> None:

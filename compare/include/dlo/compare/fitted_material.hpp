@@ -65,8 +65,8 @@ struct MaterialFitOptions {
   /// fit_material() does not.
   std::optional<bool> choose_options;
   /// Whether, if residuals are systematic and none of the above is fitted, the fit tests which of
-  /// them would remove the residuals (MaterialFit::alternatives). For one or two shapes, the
-  /// interval of E then includes that of an intrinsically curved wire in misaligned clamps.
+  /// them would remove the residuals (MaterialFit::alternatives). With one or two shapes, E's
+  /// interval then includes that of an intrinsically curved wire in misaligned clamps.
   bool alternatives = false;
   /// Number of segments of a chain of hinges that is to be as stiff, 4 to 200; else no chain.
   int chain_segments = 0;
@@ -236,10 +236,9 @@ struct MaterialFit {
   /// curvature": the interval of E holds only if they are right. fit_material() lists only natural
   /// curvature and clamp directions, calibrate() all; the latter lists none without an interval.
   std::vector<std::string> assumed;
-  /// Reasons to distrust the fit, such as residuals far above the given noise (probability 1e-3, or
-  /// 5 % if more than E and density is fitted), or above a twentieth of the length, or systematic
-  /// residuals, a contradicted tolerance, or a rod that would leave its plane; calibrate() adds
-  /// repeated shapes. Empty if there are none.
+  /// Reasons to distrust the fit: residuals far above the given noise (probability 1e-3, or 5 % if
+  /// more than E and density is fitted) or above a twentieth of the length, systematic residuals, a
+  /// contradicted tolerance, a rod that would leave its plane, or, by calibrate(), repeated shapes.
   std::string warning;
   /// Standard deviation of one coordinate: given, or estimated and then at least 1e-8 l, the energy
   /// model's own error.

@@ -43,12 +43,11 @@ namespace dlo::compare {
 /// curvature are added one after the other, so that more of them never fit worse. Prior knowledge
 /// counts as measurements: the tolerances; a standard deviation of 10 / l for each term of natural
 /// curvature; a factor of ten for GJ / EI. If errors are correlated, the covariance of the numbers
-/// is that of least squares under such errors, averaged over all
-/// correlations that the residuals leave likely. The ends of the interval of E are where the
-/// profile of the squares, in which the effect of the others is linear about the optimum, has
-/// increased by as much as that variance implies; the interval of GJ is linear altogether. If
-/// natural curvature is fitted, the rod of a planar shape is confined to its scene's plane; the
-/// warning states whether it would leave it.
+/// is that of least squares under such errors, averaged over all correlations that the residuals
+/// leave likely. The ends of the interval of E are where the profile of the squares, in which the
+/// effect of the others is linear about the optimum, has increased by as much as that variance
+/// implies; the interval of GJ is linear altogether. If natural curvature is fitted, the rod of a
+/// planar shape is confined to its scene's plane; the warning states whether it would leave it.
 ///
 /// Two or more shapes are tested for agreement on E within their errors. If they disagree, the
 /// interval is that of their mean under a scatter between shapes (Paule and Mandel's estimate, with

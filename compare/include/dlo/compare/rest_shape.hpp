@@ -47,9 +47,9 @@ inline constexpr int most_rest_arcs = 32;
 /// information criterion. Larger numbers are not tried after three in a row that are worse, after
 /// one that agrees with the points within about 1e-7 of the length, or with fewer than two
 /// residuals per parameter. Points within 1e-6 of the length from a plane count as planar, unless a
-/// given d1 leaves the plane. Arc lengths are the file's if it has any (decreasing ones reverse the
-/// points), else those of the nearest points; both are scaled to the rod's length. Of given frames
-/// only d1 is used; in the points' plane it determines the side of d2.
+/// given d1 leaves it. Arc lengths, scaled to the rod's length, are the file's (decreasing ones
+/// reverse the points), else those of the nearest points. Of given frames only d1 is used; in the
+/// points' plane it determines the side of d2.
 /// @param length  of the rod [m]
 /// @throws InputError if the length of the points' curve differs by more than 5 %, there are fewer
 /// than 5 points, or d1 rotates by a right angle or more between fitted neighbours

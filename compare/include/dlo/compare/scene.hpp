@@ -192,14 +192,13 @@ struct Scene {
   /// Fit to points in space, if the stress-free shape is given by points. Its arcs are also the
   /// natural curvature and twist of `sections`, or natural_strain if there is one arc.
   std::optional<RestShape> rest_shape;
-  std::vector<Gripper> grippers;  ///< one or more, in the file's order
-  std::vector<PointLoad> loads;   ///< may be empty
-  /// May be empty; overlapping ones are added. The buoyancy of a file's [medium] is one of them.
-  std::vector<DistributedLoad> distributed_loads;
-  std::optional<energy_model::Drag> drag;  ///< drag of a steady stream on the whole rod
-  std::vector<Obstacle> obstacles;         ///< may be empty
-  ForceModelSettings force_model;          ///< as given in the file
-  TrackRates track;                        ///< as given in the file
+  std::vector<Gripper> grippers;                   ///< one or more, in the file's order
+  std::vector<PointLoad> loads;                    ///< may be empty
+  std::vector<DistributedLoad> distributed_loads;  ///< they add up, with the buoyancy of [medium]
+  std::optional<energy_model::Drag> drag;          ///< drag of a steady stream on the whole rod
+  std::vector<Obstacle> obstacles;                 ///< may be empty
+  ForceModelSettings force_model;                  ///< as given in the file
+  TrackRates track;                                ///< as given in the file
   /// Points of the rod from which a rod with inertia starts ([track] start). Points at one time are
   /// a shape that is released from rest; points at several times are a recording, whose velocities
   /// are used too. Null: the rod starts from its equilibrium.

@@ -59,10 +59,9 @@ class Trajectory {
 
   [[nodiscard]] bool empty() const { return poses_.empty(); }  ///< Whether there are no poses.
   [[nodiscard]] const std::vector<Pose>& poses() const { return poses_; }  ///< By time.
-  // The following functions need a trajectory that has poses.
-  [[nodiscard]] double begin() const { return poses_.front().time; }  ///< First time [s].
-  [[nodiscard]] double end() const { return poses_.back().time; }     ///< Last time [s].
-  /// Returns the pose at any time [s].
+  [[nodiscard]] double begin() const { return poses_.front().time; }       ///< First time [s].
+  [[nodiscard]] double end() const { return poses_.back().time; }          ///< Last time [s].
+  /// Returns the pose at any time [s]. This function, begin() and end() need one pose or more.
   [[nodiscard]] Pose pose_at(double time) const;
 
   /// Compares all poses.
