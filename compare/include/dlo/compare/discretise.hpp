@@ -41,8 +41,8 @@ struct Discretisation {
   std::vector<std::size_t> walls;   ///< index in the scene of each obstacle in rod.walls
   std::vector<std::size_t> solids;  ///< index in the scene of each obstacle in rod.solids
   Eigen::Matrix3Xd weights;         ///< part of rod.loads that is the rod's own weight [N]
-  /// Start shapes of a simulation [m]: a straight one for a single gripper; two for several
-  /// grippers, with the slack along and against the load.
+  /// Start shapes of a simulation [m]: for a single gripper one, straight except along obstacles;
+  /// for several grippers two, with the slack along and against the load.
   std::vector<Eigen::Matrix3Xd> starts;
   /// Arc lengths of the points [m]. Points inside a gripper at an end have negative values or
   /// values beyond the rod's length.

@@ -44,8 +44,8 @@ inline constexpr int most_rest_arcs = 32;
 
 /// Fits arcs to points, at most 150 of them, by nonlinear least squares in strains and pose. Of 1,
 /// 2, 3, 4, 6, 8, 12, 16, 24 and 32 arcs it uses the number with the least value of Schwarz's
-/// information criterion. Larger numbers are not tried after three in a row that are worse, after
-/// one that agrees with the points within about 1e-7 of the length, or with fewer than two
+/// information criterion. Larger numbers are not tried after three in a row that are worse, or
+/// after one that agrees with the points within about 1e-7 of the length. Two arcs or more need two
 /// residuals per parameter. Points within 1e-6 of the length from a plane count as planar, unless a
 /// given d1 leaves it. Arc lengths, scaled to the rod's length, are the file's (decreasing ones
 /// reverse the points), else those of the nearest points. Of given frames only d1 is used; in the
