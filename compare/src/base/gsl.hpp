@@ -13,8 +13,8 @@
 
 namespace dlo::compare {
 
-/// Turns off GSL's error handler, which aborts the program. Every function that calls GSL calls
-/// this first and checks each status.
+/// Turns off GSL's error handler, which aborts the program; GSL then reports errors by its statuses
+/// alone. Every function that calls GSL calls this first.
 inline void silence_gsl() {
   static const bool silent = gsl_set_error_handler_off() != nullptr;
   (void)silent;

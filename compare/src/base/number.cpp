@@ -9,7 +9,7 @@ namespace dlo::compare {
 namespace {
 
 /// Returns the power of ten of a number's first nonzero digit, plus one if the digit is before the
-/// point. The number has plain digits with at most one point, and an exponent.
+/// point. The number has digits with at most one point; a sign and an exponent are optional.
 long decimal_exponent(std::string_view number) {
   const std::size_t mark = std::min(number.find_first_of("eE"), number.size());
   const std::string_view digits = number.substr(0, mark);

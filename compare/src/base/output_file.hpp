@@ -23,7 +23,7 @@ struct OutputTarget {
   /// How the target is written.
   enum class Kind {
     file,    ///< a regular file, or a name that is free: replaced at once when it is whole
-    device,  ///< a device, a pipe or a socket: written in place
+    device,  ///< a device or a pipe: written in place; a socket, which cannot be opened
     /// A descriptor of this process, as /dev/stdout is: written at its current position.
     descriptor,
   };
@@ -52,8 +52,8 @@ enum class Replaces {
 
 /// An output that is being written. A regular file is written under a temporary name next to its
 /// target and is renamed when finish() returns, after it is on the disk: no reader ever sees an
-/// incomplete file, and without finish() the target is unchanged. Links are kept. A replaced file
-/// keeps its permissions.
+/// incomplete file, and without finish() the target is unchanged. Symbolic links are kept, hard
+/// links are not. A replaced file keeps its permissions, and its owner if this user may set it.
 class OutputFile {
  public:
   /// @throws InputError as output_target(), or if the command has read the file (InputsKept);

@@ -50,7 +50,8 @@ template <typename Argument>
 using Printed = std::conditional_t<std::is_floating_point_v<std::remove_cvref_t<Argument>>,
                                    UnsignedZero<std::remove_cvref_t<Argument>>, Argument>;
 
-/// Appends formatted text, in which no floating-point number is printed as -0.
+/// Appends formatted text, in which no floating-point argument is printed as -0. Numbers in a list
+/// (fmt::join) are not covered.
 template <typename... Arguments>
 void append(std::string& text, fmt::format_string<Printed<Arguments>...> format,
             Arguments&&... arguments) {

@@ -40,7 +40,8 @@ class TemporaryGroup {
 void end_groups();
 
 /// Installs a handler that calls end_groups() for each signal that ends the process by default,
-/// unless the signal is ignored or has a handler. Meant for programs: a library installs none.
+/// except SIGKILL, unless the signal is ignored or has a handler. Meant for programs: a library
+/// installs none.
 void end_groups_at_signals();
 
 /// Returns the folder for temporary files: TMPDIR (else TMP, TEMP or TEMPDIR), or /tmp if that
@@ -72,7 +73,7 @@ class TemporaryFile {
 class TemporaryFolder {
  public:
   /// @param folder  in which the folder is made
-  /// @throws OutputError with this message and the reason if it cannot be made
+  /// @throws OutputError with the message `failure` and the reason if it cannot be made
   explicit TemporaryFolder(const std::string& failure,
                            const std::filesystem::path& folder = temporary_directory());
   ~TemporaryFolder();

@@ -15,7 +15,9 @@ struct ShapeErrors {
   double rms = 0;  ///< root mean square along the rod
   /// Largest distance of any point; empty from dlo suite, which measures rms alone
   std::optional<double> max;
-  std::optional<double> tip;  ///< distance of the free tip; empty if both ends are held
+  /// Distance of the free end, of that at s = l if both are free; empty if both ends are held, and
+  /// from dlo suite
+  std::optional<double> tip;
 };
 
 /// Errors of one scene with one choice of model, law, bookkeeping and N, or with one foreign
@@ -50,7 +52,8 @@ struct BaselineCase {
 [[nodiscard]] std::vector<BaselineCase> load_baseline_if_exists(const std::string& path);
 
 /// Replaces a baseline file if its content is still `read`.
-/// @throws OutputError if another process has changed the file, or if it cannot be written
+/// @throws OutputError if another process has changed the file; else as load_baseline() and
+/// write_file()
 void replace_baseline(const std::string& path, const std::vector<BaselineCase>& read,
                       const std::vector<BaselineCase>& cases);
 

@@ -89,8 +89,8 @@ struct RegressionResult {
 
 /// Requested scene and model: its errors, or the reason why there are none.
 struct MeasuredCase {
-  BaselineCase entry;   ///< has no errors if the case was not solved
-  std::string problem;  ///< message of the solver; empty if there is none
+  BaselineCase entry;   ///< its errors are 0 or empty if the case was not solved
+  std::string problem;  ///< why the case was not solved; empty if it was
   std::string note;     ///< how the shape was interpreted; empty: as it is
   /// TrivialShape::deflection_m divided by the length if the tolerance is a fraction of it, else 1.
   double deflection_share = 1;
@@ -98,9 +98,9 @@ struct MeasuredCase {
 
 /// Compares the cases of the baseline and of this run, sorted by name. A case is worse if any of
 /// its errors is worse, and better if none is worse and any is better. An error that only one side
-/// has is worse. A case is changed, whatever its errors, in two cases: its scene's fingerprint
-/// differs, or it is the only case of its scene and model that the baseline lacks, and the baseline
-/// has exactly one case of them that was not measured.
+/// has is worse. A solved case is changed, whatever its errors, in two cases: its scene's
+/// fingerprint differs, or it is the only case of its scene and solver() that the baseline lacks,
+/// and the baseline has exactly one case of them that was not measured.
 /// @throws InputError if two measured cases have the same name, std::invalid_argument if a
 /// tolerance is negative or not finite
 [[nodiscard]] std::vector<RegressionResult> judge_regression(
@@ -122,8 +122,8 @@ struct RegressRequest {
 /// Comparison of scenes with a baseline, as `dlo regress` prints it.
 struct Regression {
   std::vector<RegressionResult> results;  ///< sorted by name
-  /// Measured cases, to be written as a new baseline of these scenes; cases that were not solved
-  /// have no errors.
+  /// Measured cases, to be written as a new baseline if solved(); the errors of cases that were not
+  /// solved are 0 or empty.
   std::vector<BaselineCase> cases;
 
   /// Whether every case was solved.
@@ -135,7 +135,8 @@ struct Regression {
 /// Measures scenes and compares them with the baseline. A solver that does not converge gives the
 /// verdict not_solved, no exception.
 /// @param progress  counts the cases
-/// @throws InputError if a model does not accept a scene, and as judge_regression()
+/// @throws InputError if a model does not accept a scene, and as judge_regression() and, for a
+/// tolerance of deflection, required_deflection(); OutputError as run_foreign()
 [[nodiscard]] Regression regress(const std::vector<Scene>& scenes,
                                  const std::vector<BaselineCase>& baseline,
                                  const RegressRequest& request, const Progress& progress = {});

@@ -81,8 +81,8 @@ Sweep::Sweep(SceneTemplate scene, Grid grid, SweepModel model, const SolveOption
 void Sweep::require_one_scene() {
   constexpr std::int64_t most_tries = 1000;
   const std::int64_t tries = std::min(grid_.size(), most_tries);
-  // The step is close to the golden section of the grid and has no common divisor with its size. It
-  // therefore visits every part of the grid before it returns to its start.
+  // The step has no common divisor with the grid's size, so it returns to its start only after all
+  // rows. For a large grid it is close to the golden section, so that few tries are spread evenly.
   std::int64_t step = std::max<std::int64_t>(1, grid_.size() / 1000 * 618);
   while (std::gcd(step, grid_.size()) != 1) ++step;
   std::string first_problem;

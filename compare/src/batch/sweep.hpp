@@ -55,7 +55,7 @@ using SweepCell = std::variant<std::monostate, std::int64_t, double, std::string
 /// Rows first, first + step, ..., below last.
 struct RowRange {
   std::int64_t first = 0;  ///< the first row, from 0
-  std::int64_t last = 0;   ///< one past the last row
+  std::int64_t last = 0;   ///< upper bound of the rows, not included
   std::int64_t step = 1;   ///< > 0
 };
 
@@ -88,6 +88,7 @@ class Sweep {
 
   /// Computes one row at full precision, one cell per column. status is "ok", or the reason why
   /// there are no results: a scene that is refused or does not converge gives a row like any other.
+  /// @throws std::bad_alloc, std::system_error without memory or threads
   [[nodiscard]] std::vector<SweepCell> cells(std::int64_t row) const;
   /// Returns the cells of a row as a CSV line. Numbers of results have 10 significant digits.
   [[nodiscard]] std::string line(const std::vector<SweepCell>& cells) const;

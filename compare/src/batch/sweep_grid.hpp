@@ -13,7 +13,7 @@ enum class Spacing { list, linear, logarithmic };
 struct Axis {
   std::string field;  ///< dotted path such as rod.material.youngs_modulus or gripper.0.direction
   Spacing spacing = Spacing::list;  ///< list, or the kind of range
-  std::vector<std::string> values;  ///< values of a list, as a scene file spells them
+  std::vector<std::string> values;  ///< values of a list, as a scene file spells them, less `unit`
   double first = 0;                 ///< first value of a range, in `unit`
   double last = 0;                  ///< last value of a range, in `unit`
   std::string unit;                 ///< unit of a range or of all numbers of a list; may be empty

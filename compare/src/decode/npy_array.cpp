@@ -90,7 +90,7 @@ void NpyArray::require_numbers() const {
                     "32 and 64 bits, such as <f8)",
                     quoted_piece(type_)));
   }
-  // No dimension and no product can overflow, because each is compared with the file's size.
+  // No dimension and no product can overflow, because each is at most InputFile::largest_file.
   std::size_t bytes = format_->bytes;
   for (const std::size_t size : shape_) {
     if (size > InputFile::largest_file) fail(too_large(*this));

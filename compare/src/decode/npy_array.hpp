@@ -19,7 +19,8 @@ inline constexpr std::string_view npy_magic = "\x93NUMPY";
 class NpyArray {
  public:
   /// Reads the header. @param bytes  must outlive the array;  @param where  for messages
-  /// @throws InputError that names `where` if the header is damaged
+  /// @throws InputError that names `where` if the header is damaged or too long, or if it is that
+  /// of a structured array
   NpyArray(std::string_view bytes, std::string where);
 
   /// Returns the size of each dimension.

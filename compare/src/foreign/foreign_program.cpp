@@ -70,8 +70,8 @@ class ProgramFolder {
   TemporaryFolder folder_{temporary_directory().string()};
 };
 
-/// Returns ": " and the last line of a program's standard error that is not blank, or an empty
-/// string if the file cannot be read: a program may have written anything, of any size.
+/// Returns ": " and the first 200 bytes of the last line of a program's standard error that is not
+/// blank. Returns "" if there is none or the file cannot be read: a program may write anything.
 std::string last_words(const std::string& file) {
   constexpr std::size_t most_message_bytes = 200;
   try {

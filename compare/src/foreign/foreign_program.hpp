@@ -16,7 +16,7 @@ namespace dlo::compare {
 /// Foreign simulator, as --with names it: NAME=COMMAND (doc/protocol.md).
 struct ForeignProgram {
   std::string name;  ///< letters, digits and "_.-+"; none of the names of dlo's models
-  std::vector<std::string> words;  ///< words of its command, with {scene}, {points} and {shape}
+  std::vector<std::string> words;  ///< words of its command, with {shape} at least once
 };
 
 /// Whether a name consists of letters, digits and "_.-+" and is neither "." nor "..", so that a
@@ -50,13 +50,14 @@ struct Choices<RunStatus> {
                                               {RunStatus::not_judged, "not judged", ""}};
 };
 
-/// Shape or motion of a scene with N points, or the reason why there is none. A program does not
-/// support a scene if its exit status is 3, if it failed or wrote no shape and the last line of its
-/// standard error begins with "not supported", or if it wrote one shape instead of a motion.
+/// Shape or motion of a scene with N points, or the reason why there is none. The status of a
+/// program that ended within the time limit is not_supported if its exit status is 3, or if it
+/// wrote one shape instead of a motion. It is so too if the program failed or wrote no shape, and
+/// the last line of its standard error begins with "not supported".
 struct SimulatorRun {
   int points = 0;                        ///< N
   RunStatus status = RunStatus::failed;  ///< how the run ended
-  std::string problem;                   ///< one line; empty if there is a shape or a motion
+  std::string problem;                   ///< one line; empty if the status is `solved`
   double seconds = 0;                    ///< wall time of the simulator [s]
   bool too_long = false;                 ///< whether a program was killed at the time limit
   std::optional<MeasuredShape> shape;    ///< shape of a solved run of a scene at rest
@@ -70,6 +71,7 @@ struct SimulatorRun {
 /// points, {points} by their number, and {shape} by the file that the program has to write;
 /// {shape}.csv or a similar name is found too, if it is the only one. Both files are in a new
 /// temporary folder, which is removed afterwards. The working directory is that of this process.
+/// A shape of segment starts is completed (complete_segment_starts()).
 /// @param time_limit  [s], > 0
 /// @throws OutputError if that folder cannot be made or written
 [[nodiscard]] SimulatorRun run_foreign(const ForeignProgram& program, Scene scene, int points,
@@ -89,7 +91,8 @@ void require_held_ends(const Scene& scene, const Shape& aligned, bool has_arc_le
 
 /// Measures the distances of a foreign shape from a reference, in the scene's frame, as `dlo check`
 /// measures a file that contains the whole rod. Sets only rms_m, max_m, rms_over_length and tip_m.
-/// @throws InputError as require_held_ends(), or if the shape is less than half of the rod
+/// @throws InputError as align() and require_held_ends(), or if the shape is less than half of the
+/// rod
 [[nodiscard]] Deviation foreign_deviation(const Scene& scene, const MeasuredShape& shape,
                                           const Reference& reference);
 
