@@ -31,9 +31,9 @@ constexpr NamedUnit named_units[] = {{"metres", 1}, {"mm", 1e-3},       {"cm", 1
 constexpr double shortest = 0.5;
 constexpr double longest = 1.25;
 
-/// A unit that a file may be in, other than the one in which it was read.
+/// A unit that a file may be in.
 struct FileUnit {
-  std::string words;  ///< a clause: "the file is in mm, not in metres"
+  std::string words;  ///< a clause: "the file is in mm, not in metres"; empty: the unit as read
   double factor = 1;  ///< factor that converts the shape to metres
 };
 
@@ -112,7 +112,7 @@ std::vector<Eigen::Matrix3d> signed_permutations() {
   return all;
 }
 
-/// Axes that a file may have instead of the scene's.
+/// Axes that a file may have; `words` is empty if they are the scene's.
 struct FileAxes {
   Eigen::Matrix3d axes;  ///< from the file's coordinates to the scene's: signed permutation
   std::string words;     ///< a clause: "z is up in the file (the scene's y is the file's z, ..)"

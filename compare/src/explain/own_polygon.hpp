@@ -36,9 +36,10 @@ struct CandidateChain {
   /// Whether the law is identified: with the other laws the points are more than twice as far away,
   /// and more than 1e-5 of the length.
   bool is_law_identified = false;
-  std::vector<double> joints;  ///< arc lengths of the springs [m]
-  std::vector<double>
-      springs;  ///< stiffness factor times EI, divided by half of both adjacent segments [N m/rad]
+  std::vector<double> joints;  ///< arc lengths of the springs [m]; empty for the paper's law
+  /// Stiffness factor times EI, divided by half of both adjacent segments, of which those that a
+  /// clamp holds in the middle count as whole [N m/rad]
+  std::vector<double> springs;
   double paper_stiffness = 0;  ///< c_b of the paper's law [N]; 0 for other laws
   Shape rest;  ///< the chain's points at rest, with which the file's points are compared
 };
@@ -59,9 +60,10 @@ struct CandidateChain {
 /// A clamp inside the rod holds a whole segment: the one whose middle it is at, or, if welded, the
 /// one that begins at its point; a hinge there is not computed. There is no chain if a gripper is
 /// neither at a point of the file nor, as a clamp, in the middle between two, if there are fewer
-/// than 4 or more than 200 segments, if the scene has properties that a plain chain lacks, or if
-/// the chain does not come to rest. Chains that are held by pins only are equal for all kinds, so
-/// that there is only the first kind. Obstacles act on the chain as on the rod.
+/// than 4 or more than 200 segments, if the scene has properties that a plain chain lacks (with the
+/// paper's law also twist), or if the chain does not come to rest. Chains that are held by pins
+/// only are equal for all kinds, so that there is only the first kind. Obstacles act on the chain
+/// as on the rod.
 /// @param shape  in the scene's frame, along the whole rod
 /// @param law  joint law of the springs; empty: the one of the Hookean laws that fits best, or
 /// springs linear in the angle if the law is not identified

@@ -13,8 +13,8 @@ namespace dlo::compare {
 /// distance. Points are start points if they have no arc lengths, N > 3 of them are l/N apart
 /// within 2 %, a gripper of an end of the rod holds the first one and none the last one, and, if
 /// grippers hold both ends, one of s = l is one segment away from the last point. Points of a
-/// simulator's model need not be held, and of all bodies of the model those of the chain are used.
-/// Notes state what was done.
+/// simulator's model need not be held, N > 2 suffices, and of all bodies of the model those of the
+/// chain are used. Notes state what was done; directors are removed.
 /// @param pose  unknown coordinates of the shape's frame; if it is not the scene's frame, only
 /// points of a model are completed
 [[nodiscard]] MeasuredShape complete_segment_starts(const Scene& scene, const MeasuredShape& shape,

@@ -11,7 +11,7 @@ namespace dlo::compare {
 /// @param folder  private working directory
 [[nodiscard]] std::string gnuplot_version(const std::filesystem::path& folder);
 
-/// Runs a script in the folder of its CSV files, where it writes a picture file.
+/// Runs a script in its folder, where it writes a picture file.
 /// @return one line that states why the file was not drawn; empty on success
 [[nodiscard]] std::string run_script(const std::string& script, const std::string& output,
                                      const std::filesystem::path& folder);

@@ -98,7 +98,8 @@ std::string style_of(const CurveStyle& look) {
 struct Canvas {
   int width = figure_width;
   int height = 0;
-  int legend_font = 13;  ///< smaller than other text, so that no title is cut off [points]
+  /// Smaller than other text, so that no title is cut off [pixels in SVG, else points].
+  int legend_font = 13;
 };
 
 /// Builds a script. gnuplot places tics and legends.

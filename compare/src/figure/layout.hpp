@@ -68,9 +68,10 @@ struct Tic {
 /// An axis of a plot.
 struct PlotAxis {
   std::string label;
-  std::optional<double> from, to;  ///< limits; empty: those of the drawn data
+  std::optional<double> from, to;  ///< limits; empty: those of the drawn data, with a margin
   bool logarithmic = false;
-  std::optional<std::vector<Tic>> tics;  ///< empty: chosen by the plotting program
+  /// No elements: no tics; std::nullopt: chosen by the plotting program.
+  std::optional<std::vector<Tic>> tics;
 };
 
 /// Plot of a figure. gnuplot or matplotlib chooses its tics and places its legend below it.

@@ -10,8 +10,8 @@ namespace dlo::compare {
 
 /// Returns the springs of chains of equal segments that are nearest to a scene's rod, one chain for
 /// each kind of clamp that is possible in the scene.
-/// @param segments  4 to 200
-/// @throws ConvergenceError if no shape of the rod is found
+/// @param segments  4 to 200; for others the result is empty
+/// @throws InputError, ConvergenceError as solve_reference()
 [[nodiscard]] std::vector<ChainSprings> chain_springs(const Scene& scene, int segments,
                                                       const SolveOptions& options);
 
@@ -20,7 +20,7 @@ namespace dlo::compare {
 /// as their neighbours.
 /// @param lengths  along the rod, 4 to 200, scaled to the rod's length [m]
 /// @throws InputError if there are not 4 to 200, if one is not > 0, or if their sum differs from
-/// the rod's length by more than 5 %; ConvergenceError if no shape of the rod is found
+/// the rod's length by more than 5 %; InputError, ConvergenceError as solve_reference()
 [[nodiscard]] std::vector<ChainSprings> chain_springs(const Scene& scene,
                                                       const std::vector<double>& lengths,
                                                       const SolveOptions& options);

@@ -41,7 +41,8 @@ constexpr double doubtful_residual_ratio = 0.5;
 /// on one that it includes, divided by the residual of the fit.
 constexpr double least_residual_reduction = 0.02;
 
-/// Returns the part of the residuals that all shapes have in common; std::nullopt without a plane.
+/// Returns the part of the residuals that all shapes have in common; std::nullopt without a plane
+/// or a rod, and in the cases of common_share().
 std::optional<double> common_residual_share(MaterialProfiles& material, const MaterialPoint& best,
                                             const std::vector<FittedShape>& shapes) {
   constexpr int samples = 1001;
@@ -129,7 +130,7 @@ bool extend_interval_to_curved_wire(MaterialProfiles& material, const MaterialPo
   return true;
 }
 
-/// Returns the warning that residuals are systematic.
+/// Returns the warning that residuals are systematic; empty if they cast no doubt on the interval.
 /// @param common  shapes certainly have much of the residuals in common
 /// @param widened  whether the interval is that of any wire
 std::string systematic_residual_warning(const MaterialFit& fit, bool common, bool widened,

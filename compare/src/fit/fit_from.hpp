@@ -19,8 +19,8 @@ namespace dlo::compare {
 [[nodiscard]] MaterialPoint material_point_of(const MaterialFit& fit, const Scene& first);
 
 /// Fits the material with the given options, which fit_material() has checked.
-/// @param start  material from which the fit of all numbers starts, also for each prediction;
-/// empty: all E are searched
+/// @param start  material from which all numbers are fitted together; predictions then start at the
+/// fit. Empty: all E are searched
 [[nodiscard]] MaterialFit fit_material_from(const std::vector<Scene>& scenes,
                                             const std::vector<MeasuredShape>& shapes,
                                             const MaterialFitOptions& options,

@@ -47,8 +47,8 @@ Scene comparable_scene(Scene scene) {
   return scene;
 }
 
-/// Largest number of searches for another equilibrium of a rod between several grippers, at the
-/// optimum of the followed one.
+/// Largest number of searches for nearer equilibria at the best material, after each of which the
+/// profile is computed anew.
 constexpr int most_other_states = 2;
 /// Step in the logarithm of a material for derivatives; shapes are accurate to 1e-10 l.
 constexpr double derivative_step = 1e-3;

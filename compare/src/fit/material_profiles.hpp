@@ -38,10 +38,9 @@ class ShapeMisfit {
 
   /// Searches for equilibria at a material instead of following one: with several grippers as at
   /// the first material, and, where an equilibrium is known, also from the shape's own points
-  /// (energy_model::energy_near). Returns
-  /// true if an equilibrium differs and is nearer to the shape's points. All results at other
-  /// materials are then discarded, and a rod with one gripper is followed from that equilibrium
-  /// from then on.
+  /// (energy_model::energy_near). Returns true if an equilibrium differs and is nearer to the
+  /// shape's points. All results at other materials are then discarded, and a rod with one gripper
+  /// is followed from that equilibrium from then on.
   bool find_nearer_equilibria(const MaterialPoint& material);
 
   /// Returns the equilibria at a material; empty where there is none.
@@ -68,8 +67,8 @@ class ShapeMisfit {
   [[nodiscard]] std::shared_ptr<const Solved> solved(std::size_t i, const MaterialPoint& material);
   [[nodiscard]] std::shared_ptr<Solved> solve(std::size_t i, const MaterialPoint& material,
                                               const energy_model::Equilibrium* start);
-  /// Returns the equilibrium whose sum of squares is smaller than that of `now` by over 1 %: the
-  /// lowest one or the one near the points; null if neither is.
+  /// Returns the equilibrium whose sum of squares is smaller than that of `now`, if any, by over
+  /// 1 %: the lowest one or the one near the points; null if neither is.
   [[nodiscard]] std::shared_ptr<const Solved> nearer_equilibrium(
       std::size_t i, const MaterialPoint& material, const std::shared_ptr<const Solved>& now);
   [[nodiscard]] std::shared_ptr<const Solved> nearest(std::size_t i,
@@ -94,7 +93,7 @@ class ShapeMisfit {
 class MaterialProfiles {
  public:
   /// All references must outlive this.
-  /// @throws InputError if fewer numbers are measured than fitted
+  /// @throws InputError if fewer numbers are measured than fitted or, without given noise, as many
   MaterialProfiles(const std::vector<Scene>& scenes, const std::vector<MeasuredShape>& shapes,
                    const MaterialFitOptions& options);
 
@@ -170,8 +169,8 @@ class MaterialErrors {
   [[nodiscard]] double level(std::size_t number) const;
 
   /// Returns the sum of squares up to which another local minimum is an equally good explanation
-  /// [m^2]. Its frames differ too, so it must be outside the joint region of all fitted numbers:
-  /// its sum of squares must be so large that the probability is below 1e-3 (F distribution;
+  /// [m^2]. Its frames differ too, so it is rejected only outside the joint region of all fitted
+  /// numbers: if the probability of so large a sum of squares is below 1e-3 (F distribution;
   /// chi-squared distribution for given noise).
   [[nodiscard]] double rival_minimum_level(std::size_t number) const;
 

@@ -6,13 +6,14 @@
 
 namespace dlo::compare {
 
-/// One coordinate of a shape's residuals, by growing arc length, and its derivatives by the fitted
-/// numbers.
+/// One coordinate of a shape's residuals, points minus rod, by growing arc length, and its design.
 struct ResidualSeries {
   std::size_t shape = 0;           ///< index of the shape
   std::vector<double> arc_length;  ///< non-decreasing [m], n
   Eigen::VectorXd residual;        ///< [m], n
-  Eigen::MatrixXd design;          ///< derivatives by the fitted numbers, n x p, any scale
+  /// Derivatives of the points by the coordinates of frames, then of the rod by the fitted numbers
+  /// (minus those of the residual), n x p, any scale
+  Eigen::MatrixXd design;
 };
 
 /// Covariance of errors e along the rod, up to a factor,
@@ -37,7 +38,8 @@ struct CorrelationEstimate {
 
 /// Returns the most likely covariance of at most 250 residuals of each series by restricted maximum
 /// likelihood, which accounts for the part of the errors that the fitted numbers absorbed. The
-/// likelihood is that of a Kalman filter's innovations, so it costs O(n p) for n residuals.
+/// likelihood is that of a Kalman filter's innovations, so its cost is proportional to the number
+/// of residuals.
 [[nodiscard]] CorrelationEstimate correlation_of(const std::vector<ResidualSeries>& series);
 
 /// A covariance and its probability relative to others.
@@ -56,7 +58,8 @@ struct CorrelationEffect {
   /// Variance of a fitted number, divided by that with independent errors of the same variance.
   double variance_factor = 1;
   /// Expected sum of squares of the residuals, divided by that with independent errors of the same
-  /// variance. It is below 1, because the fitted numbers absorb what neighbours have in common.
+  /// variance: 1 without correlation, else usually below 1, because the fitted numbers absorb what
+  /// neighbours have in common.
   double residual_factor = 1;
   /// Degrees of freedom of the sum of squares: those of the chi-squared distribution with the same
   /// mean and variance (Satterthwaite).

@@ -58,7 +58,7 @@ class FittedRods {
   /// Columns of the design to compute: derivatives by the frames only, or by the numbers too.
   enum class Columns { frames, all };
   /// Returns the residuals of all shapes, std::nullopt if a shape has no equilibrium there or, with
-  /// Columns::all, at a step of a number to either side.
+  /// Columns::all, at both steps of a number, to either side.
   /// @throws ConvergenceError if the time limit is exceeded
   [[nodiscard]] std::optional<std::vector<ResidualSeries>> residuals(const Eigen::VectorXd& values,
                                                                      Columns columns);

@@ -224,8 +224,9 @@ double GaussNewton::last_step(double first_deviation) const {
 }
 
 /// Returns the step to the least deviance of the linear problem, with the first number limited to
-/// its longest step: a first number that the shapes hardly determine would move far away, and the
-/// others with it.
+/// its bounds and longest step: a first number that the shapes hardly determine would move far
+/// away, and the others with it. If another number exceeds its longest step, the whole step is
+/// shortened.
 Eigen::VectorXd GaussNewton::next_step() const {
   const std::vector<Unknown>& unknowns = rods_.unknowns();
   const Eigen::VectorXd down = log_posterior_gradient(linear_, weight(), values_);

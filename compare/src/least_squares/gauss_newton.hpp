@@ -70,7 +70,7 @@ class GaussNewton {
   /// @param values   initial values
   GaussNewton(FittedRods& rods, Eigen::VectorXd values, const GaussNewtonOptions& options);
 
-  /// Iterates to a local minimum of the deviance.
+  /// Iterates to a local minimum of the deviance, in at most 30 steps.
   /// @return false if a shape has no equilibrium at the values or at neighbouring ones
   /// @throws ConvergenceError if the time limit is exceeded
   /// @throws InputError if the noise is estimated and no more numbers are measured than fitted
@@ -89,7 +89,8 @@ class GaussNewton {
   /// Returns the variance of a coordinate's error [m^2].
   [[nodiscard]] double variance() const { return variance_; }
   [[nodiscard]] double weight() const { return given_weight_.value_or(variance_); }
-  /// Returns the degrees of freedom of the residuals.
+  /// Returns the degrees of freedom of the residuals; with given noise the fitted numbers are not
+  /// subtracted.
   [[nodiscard]] double freedom() const { return freedom_; }
   /// Returns the sum of squares divided by the weight, plus the priors' terms.
   [[nodiscard]] double deviance() const;

@@ -27,9 +27,9 @@ class LogProfile {
 
   [[nodiscard]] const Minimum& minimum() const { return minimum_; }
 
-  /// The outermost crossings of a level. A side is open if the function is below the level as far
-  /// as it was searched, or is undefined beyond. An undefined value between values below and above
-  /// the level counts as below.
+  /// The outermost crossings of a level. A side is open if the function is below the level up to
+  /// the end of the range, or is undefined beyond. An undefined value between values below and
+  /// above the level counts as below.
   struct Interval {
     std::optional<double> low, high;
   };

@@ -22,8 +22,10 @@ namespace dlo::compare {
 /// Meaning of the third coordinate of points that lie in a plane.
 enum class FlatShapes {
   unmeasured,  ///< it is unknown: the shape is a photograph
-  confined,    ///< it is unknown, and the rod of a planar scene is confined to the scene's plane
-  measured,    ///< it was measured as zero
+  /// It is unknown, and the rod of a planar scene without obstacles is confined to the scene's
+  /// plane.
+  confined,
+  measured,  ///< it was measured as zero
 };
 
 /// Options of the alignment of shapes, and limits of the solves of their rods.
@@ -50,7 +52,7 @@ class TimeLimitError : public ConvergenceError {
 class MeasuredShapes {
  public:
   /// @param timer  started when the time limit begins
-  /// @throws InputError in the cases of align()
+  /// @throws InputError in the cases of align() and upward_direction()
   MeasuredShapes(const std::vector<Scene>& scenes, const std::vector<MeasuredShape>& shapes,
                  const MeasuredOptions& options, const Timer& timer);
 
@@ -67,7 +69,8 @@ class MeasuredShapes {
   /// of each shape's frame.
   [[nodiscard]] Eigen::Index frame_columns() const { return frame_columns_; }
 
-  /// Solves a modified scene of a shape by the scene's reference_model().
+  /// Solves a modified scene of a shape by the scene's reference_model(). The result's status
+  /// states whether it converged.
   /// @param start  an equilibrium to start from; null: search
   /// @throws TimeLimitError
   /// @throws InputError if the model does not support the scene
@@ -97,10 +100,10 @@ class MeasuredShapes {
   [[nodiscard]] double sum_of_squares(std::size_t shape,
                                       const energy_model::Equilibrium& rod) const;
 
-  /// Returns the residuals of an aligned shape, points minus rod times root_weights(), with the
-  /// derivatives by its own frame's coordinates and by the fitted numbers; other columns are zero.
-  /// There is one series per coordinate with given arc lengths, else one per direction across the
-  /// rod; none out of the plane of a shape that lies in one.
+  /// Returns the residuals of an aligned shape, points minus rod times root_weights(). The design
+  /// has the derivatives of the points by the coordinates of its own frame, and of the rod by the
+  /// fitted numbers; other columns are zero. There is one series per coordinate with given arc
+  /// lengths, else one per direction across the rod; none out of the plane if is_flat().
   /// @param movements  by the fitted numbers, in columns after the frames'
   /// @param numbers  number of fitted numbers
   [[nodiscard]] std::vector<ResidualSeries> residuals(std::size_t shape, const Curve& curve,
