@@ -22,7 +22,6 @@ struct JunitCase {
   double seconds = 0;   ///< wall time [s]
 };
 
-/// Named group of test cases.
 struct JunitSuite {
   std::string name;
   std::vector<JunitCase> cases;
@@ -77,7 +76,6 @@ struct RegressionTolerance {
   bool of_deflection = false;
 };
 
-/// Comparison of one case with its baseline.
 struct RegressionResult {
   std::string name;  ///< BaselineCase::name() of the case; for a changed case, its name in this run
   /// Verdict over all errors of the case.

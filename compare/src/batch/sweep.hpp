@@ -42,7 +42,6 @@ struct Choices<SweepModel> {
 /// Type of all cells of a column that are not empty.
 enum class CellKind { whole, number, text };
 
-/// A column of a sweep's table.
 struct SweepColumn {
   std::string name;  ///< name in the header
   CellKind kind = CellKind::number;
@@ -68,7 +67,6 @@ class Sweep {
   /// tried, of a larger grid 1000 rows that are spread over it
   Sweep(SceneTemplate scene, Grid grid, SweepModel model, const SolveOptions& options = {});
 
-  /// Returns the grid over the scene's fields.
   [[nodiscard]] const Grid& grid() const { return grid_; }
 
   /// Returns the columns: row, one column for each varied field (of numbers if all its values are

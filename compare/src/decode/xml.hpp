@@ -18,7 +18,6 @@ class XmlFile {
   /// is nested too deep
   XmlFile(std::string_view text, std::string file);
 
-  /// Returns the root element.
   [[nodiscard]] pugi::xml_node root() const { return document_.document_element(); }
   /// Returns "file:line" of an element.
   [[nodiscard]] std::string where(const pugi::xml_node& node) const;

@@ -22,7 +22,6 @@ namespace dlo::compare {
 [[nodiscard]] std::string inline_svg(const std::string& svg, const std::string& name,
                                      const std::string& title);
 
-/// File formats of a picture.
 enum class PictureFormat { svg, png, pdf };
 
 /// Extensions of their files.

@@ -10,10 +10,8 @@ namespace dlo::compare {
 /// Symbol at the points of a curve.
 enum class Mark { none, cross, open_square, square, circle, dot, triangle, down_triangle, diamond };
 
-/// Dash pattern of a line.
 enum class Dashes { solid, dashed, dotted, dash_dotted, dash_dot_dotted };
 
-/// Style of a curve.
 struct CurveStyle {
   std::string colour = "#000000";  ///< "#RRGGBB"
   double width = 1;                ///< line width; 0: no line
@@ -40,7 +38,6 @@ struct PlottedCurve {
   std::vector<double> z;  ///< only for a plot in space
 };
 
-/// Text in a plot.
 struct Text {
   double x, y;
   std::string words;
@@ -65,7 +62,6 @@ struct Tic {
   std::string label;
 };
 
-/// An axis of a plot.
 struct PlotAxis {
   std::string label;
   std::optional<double> from, to;  ///< limits; empty: those of the drawn data, with a margin

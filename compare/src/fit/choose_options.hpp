@@ -22,7 +22,7 @@ inline constexpr std::size_t least_shapes_for_prediction = 3;
 /// Fits the material with the options that predict each shape best from the others: the number of
 /// terms of natural curvature, and whether clamps are as given, misaligned equally in all shapes,
 /// or misaligned in each shape. The interval of E is widened to that of the largest number of terms
-/// that predicts nearly as well.
+/// that predicts nearly as well. Returns the fit of the material alone if its residuals are noise.
 /// @param options  checked by fit_material()
 /// @throws ConvergenceError if no options result in a fit; other exceptions as fit_material()
 [[nodiscard]] MaterialFit fit_with_chosen_options(const std::vector<Scene>& scenes,

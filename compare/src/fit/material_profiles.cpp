@@ -79,7 +79,6 @@ MaterialErrors::MaterialErrors(MaterialProfiles& material, const MaterialPoint& 
                              quantile(0));
 }
 
-/// Sets the effects of correlated errors.
 void MaterialErrors::set_correlation_effects(const ErrorCovariance& covariance,
                                              const std::vector<ResidualSeries>& series,
                                              Eigen::Index frames) {

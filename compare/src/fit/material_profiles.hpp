@@ -127,7 +127,6 @@ class MaterialProfiles {
   /// Returns the sum of squares with the best density [m^2].
   [[nodiscard]] double least_squares(double log_modulus) { return density_at(log_modulus).value; }
 
-  /// Returns the equilibria at a material.
   [[nodiscard]] FittedRods::Rods rods(const MaterialPoint& material) {
     return misfit_.rods(material);
   }

@@ -22,8 +22,8 @@ struct ChildFiles {
 };
 
 /// Runs a program, found by PATH, as a process group of its own and waits for it. Its standard
-/// input is /dev/null. The rest of the group is killed when the program has ended, at the time
-/// limit, or when a signal ends this process.
+/// input is /dev/null. The group is killed when the program has ended, at the time limit, or when a
+/// signal ends this process (TemporaryGroup).
 /// @param words       program and arguments, one or more
 /// @param time_limit  [s], > 0
 [[nodiscard]] ChildOutcome run_child(const std::vector<std::string>& words, const ChildFiles& files,

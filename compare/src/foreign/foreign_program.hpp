@@ -32,7 +32,6 @@ struct ForeignProgram {
 [[nodiscard]] std::vector<ForeignProgram> parse_foreign_programs(
     const std::vector<std::string>& texts);
 
-/// Status of a run.
 enum class RunStatus {
   solved,         ///< there is a shape or a motion
   not_supported,  ///< the simulator reports that it does not support the scene

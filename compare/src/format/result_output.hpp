@@ -71,7 +71,6 @@ void count_from_1(Json& contacts);
 
 [[nodiscard]] Json comparison_json(const compare::Comparison& comparison);
 
-/// Returns the document of several comparisons.
 [[nodiscard]] Json comparisons_json(const std::vector<compare::Comparison>& comparisons);
 
 /// Returns a header, then one line per comparison.

@@ -8,14 +8,12 @@
 
 namespace dlo::compare {
 
-/// A named part of an error budget.
 struct NamedPart {
   const char* name;
   BudgetPart Budget::*of;
   bool is_neglected = false;  ///< only present if the force model neglects this property
 };
 
-/// Returns all parts.
 [[nodiscard]] std::span<const NamedPart> budget_parts();
 
 /// Returns the parts of a comparison's error budget with their names, without twist and natural

@@ -17,7 +17,6 @@ namespace dlo::compare {
 struct MaterialPoint {
   double log_modulus = 0;
   double log_density = 0;
-  /// Compares both numbers.
   auto operator<=>(const MaterialPoint&) const = default;
 };
 

@@ -47,7 +47,6 @@ struct VarianceEstimate {
 /// combination with others. The variance of such a number is infinite.
 [[nodiscard]] std::vector<bool> undetermined_numbers(const LinearFit& fit, double variance);
 
-/// Options of the Gauss-Newton iteration.
 struct GaussNewtonOptions {
   std::optional<double> noise;  ///< standard deviation of a coordinate [m]; empty: estimated
   double least_noise = 0;       ///< lower bound of the estimated noise [m]

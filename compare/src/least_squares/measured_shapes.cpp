@@ -27,7 +27,6 @@ int measured_coordinates(const Aligner& aligner, bool flat) {
   return per_point * static_cast<int>(aligner.points());
 }
 
-/// Number of samples along a rod.
 constexpr int plane_samples = 201;
 
 /// Whether energy_model::Problem::confined_to_plane applies to a scene; a scene whose clamps twist

@@ -37,8 +37,9 @@ struct MeasuredOptions {
   FlatShapes flat = FlatShapes::unmeasured;
 };
 
-/// Column of a fitted number, and its derivative of the rod's points at the measured ones [m per
-/// unit of the number], 3 x M.
+/// Column of a fitted number in the design, after the frames', and the derivative of the rod's
+/// points by the number, at the arc lengths of the measured points [m per unit of the number], 3 x
+/// M.
 using Movement = std::pair<Eigen::Index, Eigen::Matrix3Xd>;
 
 /// The time limit of a fit is reached. A fit without a part that time left out would claim more
@@ -92,7 +93,6 @@ class MeasuredShapes {
   [[nodiscard]] Curve curve(std::size_t shape, const energy_model::Equilibrium& rod) const {
     return {rod.sample, shapes_[shape].length};
   }
-  /// Aligns a shape with a rod.
   [[nodiscard]] Alignment alignment(std::size_t shape, const energy_model::Equilibrium& rod) const {
     return shapes_[shape].aligner.align(curve(shape, rod));
   }
