@@ -24,7 +24,7 @@ struct NumberFormat {
 [[nodiscard]] std::vector<double> numbers_from(std::string_view bytes, std::size_t count,
                                                const NumberFormat& format);
 
-/// Returns the unsigned number that begins at `at`; empty if the bytes end before.
+/// Returns the unsigned number that begins at `at`; empty if the bytes end before it does.
 /// @param size  number of bytes, 1 to 8
 [[nodiscard]] std::optional<std::uint64_t> unsigned_at(std::string_view bytes, std::size_t at,
                                                        std::size_t size, bool big_endian = false);

@@ -24,7 +24,7 @@ namespace dlo::compare {
 
 enum class PictureFormat { svg, png, pdf };
 
-/// Extensions of their files.
+/// File extensions, in the order of PictureFormat.
 inline constexpr const char* picture_extensions[] = {".svg", ".png", ".pdf"};
 
 /// Returns the script that draws a picture. It contains all titles and numbers.

@@ -9,7 +9,7 @@
 
 namespace dlo::cli {
 
-/// Name and unit of a fitted number in keys.
+/// Name of a fitted number in keys, and its unit as it follows there, such as "_Pa"; may be empty.
 struct Key {
   std::string name;
   std::string unit;

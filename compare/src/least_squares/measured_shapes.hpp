@@ -37,9 +37,8 @@ struct MeasuredOptions {
   FlatShapes flat = FlatShapes::unmeasured;
 };
 
-/// Column of a fitted number in the design, after the frames', and the derivative of the rod's
-/// points by the number, at the arc lengths of the measured points [m per unit of the number], 3 x
-/// M.
+/// Column of a fitted number in the design, after the frames', and the derivative by the number of
+/// the rod's points at the measured arc lengths [m per unit of the number], 3 x M.
 using Movement = std::pair<Eigen::Index, Eigen::Matrix3Xd>;
 
 /// The time limit of a fit is reached. A fit without a part that time left out would claim more
@@ -111,7 +110,7 @@ class MeasuredShapes {
                                                       const std::vector<Movement>& movements,
                                                       Eigen::Index numbers) const;
 
-  /// Returns the number of solves that ended at SolveOptions::max_evaluations.
+  /// Returns the number of calls of solve() that the energy model ended at its max_evaluations.
   [[nodiscard]] long limited_solves() const { return limited_solves_; }
   /// Returns the number of equilibria solved so far.
   [[nodiscard]] long solves() const { return solves_; }

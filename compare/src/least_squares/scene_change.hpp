@@ -16,7 +16,7 @@ namespace dlo::compare {
                                              const std::optional<Eigen::Vector3d>& normal);
 [[nodiscard]] Eigen::Matrix3Xd translation_directions(const std::optional<Eigen::Vector3d>& normal);
 
-/// Rotates a clamp's direction about an axis across it, with the frame that the clamp holds.
+/// Rotates a clamp's direction and, if it is given, d1 of the frame that the clamp holds.
 /// @param turn  rotation vector [rad]
 void rotate_clamp(Gripper& clamp, const Eigen::Vector3d& turn);
 
