@@ -52,9 +52,8 @@ struct FittedCause {
 /// @param rod    rod with which the shape was compared
 /// @param noise  differences up to this count as equal [m]
 /// @param timer  started when the time limit begins
-/// @return std::nullopt if the scene at the start of the cause has no equilibrium
-/// @throws ConvergenceError if no time is left; InputError if the scene is invalid, or the shape
-/// has too few points
+/// @return std::nullopt if the scene at the start of the cause is invalid or has no equilibrium
+/// @throws ConvergenceError if no time is left; InputError in the cases of align()
 [[nodiscard]] std::optional<FittedCause> fit_cause(const SceneCause& cause,
                                                    const MeasuredShape& shape,
                                                    const energy_model::Equilibrium& rod,
