@@ -13,8 +13,8 @@ struct SceneChoices {
   std::string length = "1 m";         ///< length of the rod
   std::string diameter = "6 mm";      ///< diameter of the rod, round and solid
   std::string material = "silicone";  ///< name of a material; ignored if a modulus is given
-  std::string youngs_modulus;         ///< E of an unnamed material, if `density` is given too
-  std::string density;  ///< density of an unnamed material, if `youngs_modulus` is given too
+  std::string youngs_modulus;         ///< E of an unnamed material, which needs `density` too
+  std::string density;  ///< density of an unnamed material; ignored without `youngs_modulus`
   /// Direction of the clamp at arc length 0; an angle is measured from +x to the upward axis.
   std::string direction = "0 deg";
   std::string up = "y";  ///< upward axis, opposite to gravity: "y" or "z"

@@ -74,7 +74,6 @@ DistributedLoad read_distributed_load(StrictTable& table, const Scene& scene) {
   return load;
 }
 
-/// Reads the drag, and adds the buoyancy of the rod: a load against gravity without inertia.
 void read_medium(StrictTable& table, Scene& scene) {
   const double density = table.number("density");
   const double section = displaced_area(scene);

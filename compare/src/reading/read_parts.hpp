@@ -75,7 +75,8 @@ void check_rolls(const Scene& scene, const std::vector<StrictTable>& entries);
 /// @throws InputError that names file, line, key, value and what is allowed
 [[nodiscard]] DistributedLoad read_distributed_load(StrictTable& table, const Scene& scene);
 
-/// Reads [medium] into a scene whose obstacles have been read.
+/// Reads [medium], whose buoyancy becomes a distributed load, into a scene whose rod and obstacles
+/// have been read.
 void read_medium(StrictTable& table, Scene& scene);
 
 /// Checks couples and follower loads: no model takes them in a scene with obstacles, and a follower

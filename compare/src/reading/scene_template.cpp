@@ -21,8 +21,8 @@
 namespace dlo::compare {
 namespace {
 
-/// Calls `place` with a field's value in the type that it would have in a file: integer, number,
-/// text or array.
+/// Calls `place` with a field's value in the type that its text shows: integer, number, array, or
+/// else text. There are no booleans: true is a text.
 template <typename Place>
 void pass_value(const SceneField& field, const std::string& file, const Place& place) {
   const std::string& text = field.value.text();
@@ -38,8 +38,8 @@ void pass_value(const SceneField& field, const std::string& file, const Place& p
   place(*array);
 }
 
-/// Returns the path that a key without its table means, or a material's key as one of the rod;
-/// empty for other fields.
+/// Returns the path of a key or symbol (E, EI) that is given without its table, or in [rod]
+/// although it is in another one; empty for other fields.
 std::string meant_by(const std::string& field) {
   const std::string given = field.starts_with("rod.") ? field.substr(4) : field;
   const std::string key = given == "E"    ? "youngs_modulus"

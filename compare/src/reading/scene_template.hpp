@@ -17,12 +17,14 @@ enum class MissingElements {
 };
 
 /// A scene file whose fields can be given other values. The values are set in the parsed TOML,
-/// which the ordinary reader then reads: a field may have any value that is valid in a scene file.
+/// which the ordinary reader then reads: a field may have any value that is valid in a scene
+/// file, except true, false, tables and texts that are numbers.
 ///
 /// A material that is given by name can be varied in parts, as rod.material.youngs_modulus. The
 /// derived field `gamma` scales gravity so that w l^3 / (EI) has its value, whatever else is
 /// varied. If fields change EI, a given torsional stiffness that is not varied itself changes in
-/// proportion: GJ / EI = 1 / (1 + nu) of a round rod, whatever its modulus and diameter.
+/// proportion: GJ / EI = 1 / (1 + nu) of a round rod, whatever its modulus and diameter. It stays
+/// as given if the file is valid only with other values. GJ of sections never changes.
 ///
 /// Safe to use from several threads at once.
 class SceneTemplate {

@@ -97,8 +97,8 @@ std::string value_text(const Json& value, const KeyName& key, double scale) {
   return formatted("{:.{}g}", value_shown, exact ? 9 : 4);
 }
 
-/// Whether a value has a text of one line: it is not null and contains no object, no empty list,
-/// and not more than nine values.
+/// Whether a value has a text of one line: it neither is nor contains null, an object or an empty
+/// list, and has at most nine values.
 bool fits_on_one_line(const Json& value) {
   constexpr std::size_t most_numbers = 9;
   if (!value.is_array()) return !value.is_object() && !value.is_null();

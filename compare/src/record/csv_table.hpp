@@ -13,11 +13,10 @@ namespace dlo::compare {
 class CsvTable {
  public:
   /// @param columns  such as "rms_m=deviation/rms_m,scene,wall_s=solver/wall_s:4": the name, the
-  /// path in the document if it differs from the name, and the number of digits if it is not ten.
-  /// The path "#" is the number of the row, from 1
+  /// path in the document if it differs from the name, and the number of digits, 1 to 9, if not
+  /// ten. The path "#" is the number of the row, from 1
   explicit CsvTable(std::string_view columns);
 
-  /// Adds columns.
   void add(std::string_view columns);
 
   /// Returns the header as a line.
@@ -50,7 +49,8 @@ struct Document {
   /// objects are shown only if they have columns here.
   std::map<std::string, std::string> columns = {};
   Magnitudes large = {};  ///< numbers of the text below 1e-9 of these are rounding
-  /// Path of the list that is the CSV table; it has columns. Empty: the document is the only row.
+  /// Path of the list that is the CSV table. Empty: the document is the only row. csv() needs an
+  /// entry of `columns` for it in either case.
   std::string table = {};
   std::string head = {};  ///< text for people before the values
   Json shown = {};        ///< values of the text; null: those of `json`

@@ -70,7 +70,7 @@ template <typename T>
   return std::visit([&](auto get) { return json_of(get(result)); }, field.get);
 }
 
-/// Returns the numbers among the fields, by their keys.
+/// Returns the values of the fields of type double, by their keys.
 template <typename T>
 [[nodiscard]] Numbers numbers_of(std::span<const Field<T>> fields, const T& result) {
   Numbers numbers;

@@ -24,8 +24,8 @@ Json grippers_json(const SolvedShape& shape) {
   return grippers;
 }
 
-/// Returns the sum over all intervals between clamps that hold frames; NaN if there is none, or if
-/// it is unknown.
+/// Returns the sum over Solution::linking, which lacks the intervals whose turns are undetermined;
+/// NaN if it is empty.
 double turns(const SolvedShape& shape, double Linking::*of_part) {
   if (shape.solution.linking.empty()) return std::numeric_limits<double>::quiet_NaN();
   double sum = 0;

@@ -13,7 +13,7 @@ namespace dlo::compare {
 /// displacement at all times, and a displacement of each frame. The motion of the rod with a
 /// gripper is computed from equilibrium shapes, by differences. The RMS with a displacement of each
 /// frame is corrected for its three numbers per frame.
-/// @param options    options of the track of the rod
+/// @param options    options of the track of the rod, with `from` and `to`
 /// @param at_rest    the rod at rest with these options
 /// @param residuals  as motion_residuals() [m]
 /// @return both causes for each gripper; only the first one if frames have fewer than two points in

@@ -111,7 +111,6 @@ struct MotionCheck {
   bool passes = false;
   std::string reason;  ///< one clause
 
-  /// Returns the frame with the largest RMS.
   [[nodiscard]] const FrameError& worst_frame_error() const {
     return errors.frames[errors.worst_frame];
   }
@@ -122,9 +121,9 @@ struct MotionCheck {
 /// the recording. Both models are computed if the scene allows both; one is judged.
 /// @param recorded  in the order of time, then of arc length
 /// @throws InputError if the scene neither moves nor has a start, the recording does not belong to
-/// it or has fewer than two times, `from` is after its first time, the tolerance is one of
-/// deflection, or the judged model does not support the scene; ConvergenceError if the judged model
-/// does not reach the recording's end
+/// it or has fewer than two times, `from` is after its first time, there are too many frames, the
+/// tolerance is one of deflection, or the judged model or the rod at rest does not support the
+/// scene; ConvergenceError if the judged model does not reach the recording's end
 [[nodiscard]] MotionCheck check_motion(const Scene& scene, const MarkerMotion& recorded,
                                        const MotionCheckRequest& request = {},
                                        const Progress& progress = {});

@@ -168,7 +168,7 @@ std::string not_identified(const MotionMisfit& misfit, const LeastSquares& neare
   return "";
 }
 
-/// Adds the remaining distances: of each recording, of each marker, and at the worst time.
+/// Adds the remaining distances: of each recording, of each marker, and of all points.
 void add_errors(const std::vector<MarkerMotion>& recordings, const Eigen::VectorXd& residuals,
                 const Scene& scene, const MotionMisfit& misfit, MotionFit& result) {
   MarkerMotion joined;

@@ -48,9 +48,11 @@ struct MotionFit {
   MotionNumber scene_stiffness;  ///< Scene::stiffness() for the scene's mass
   std::optional<MotionNumber> material, air, quadratic;  ///< see RodDamping, for the scene's mass
   RodDamping damping;                                    ///< the whole damping, fitted and known
-  double noise = 0;      ///< standard deviation of a coordinate, from the residuals [m]
-  double rms = 0;        ///< RMS distance between markers and rod [m]
-  double given_rms = 0;  ///< RMS distance of the scene as given [m]
+  double noise = 0;  ///< standard deviation of a coordinate, from the residuals [m]
+  double rms = 0;    ///< RMS distance between markers and rod [m]
+  /// RMS distance of the scene as given, with fitted starts [m]; not meaningful if its simulation
+  /// ends early.
+  double given_rms = 0;
   std::size_t coordinates = 0;
   /// Number of independent coordinates with the same information: the residuals of a marker are
   /// correlated in time.
@@ -67,8 +69,8 @@ struct MotionFit {
 /// @param scene   its grippers have the trajectories that moved them
 /// @param stages  called before each simulation
 /// @throws InputError if the scene cannot move like this, a recording does not belong to it or has
-/// too few rows, or the rod does not move at the markers; ConvergenceError if no simulation reaches
-/// its end
+/// too few rows, or the rod does not move at the markers; ConvergenceError if a simulation from
+/// which the fit of a window starts ends early
 [[nodiscard]] MotionFit fit_motion(const Scene& scene, const std::vector<MarkerMotion>& recordings,
                                    const MotionFitOptions& options, const Stages& stages = {});
 

@@ -26,7 +26,7 @@ void for_each_member(ForceModelSettings& settings, const Visit& visit) {
   visit("l_s", settings.l_s);
 }
 
-/// Visits the members of [rod]. @param scene  a Scene or a const Scene
+/// @param scene  a Scene or a const Scene
 template <typename AnyScene, typename Visit>
 requires std::is_same_v<std::remove_const_t<AnyScene>, Scene>
 void for_each_member(AnyScene& scene, const Visit& visit) {

@@ -11,7 +11,8 @@ namespace dlo::compare {
 /// Returns the linear parts of a distributed load, as the energy model needs them.
 [[nodiscard]] std::vector<energy_model::LineLoad> line_loads(const DistributedLoad& load);
 
-/// Returns the scene as a problem of the energy model, with the obstacles in reach; not checked.
+/// Returns the scene as a problem of the energy model, with the obstacles in reach, and with EA
+/// only for Stretch::counted; not checked.
 [[nodiscard]] energy_model::Problem scene_problem(const Scene& scene);
 
 /// Returns the torsion constant J of a rectangle [m^4], GJ of a section divided by its shear
@@ -28,8 +29,8 @@ namespace dlo::compare {
 /// @param width, thickness  the edges [m], > 0, in any order
 [[nodiscard]] double rectangle_torsion_constant(double width, double thickness);
 
-/// Makes the rod `factor` times as long, with the same section; arc lengths of everything on it are
-/// scaled too.
+/// Makes the rod `factor` times as long, with the same section, and scales the arc lengths of
+/// grippers, loads and sections. Natural strains, `rest_shape` and `start` are not scaled.
 void scale_length(Scene& scene, double factor);
 
 /// Returns the grippers by increasing arc length.

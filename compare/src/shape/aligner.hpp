@@ -55,11 +55,11 @@ class Aligner {
   /// that refine_placement() minimises.
   [[nodiscard]] Alignment refine_by_reported_distance(const Shape& way, RigidMotion pose,
                                                       const Curve& curve) const;
-  /// Returns the alignment with nearest points. A file that is as long as the rod is aligned by
-  /// lengths along it instead, where that gives the smaller distance.
+  /// Returns the alignment of a placement. With nearest points, weights by length and a fitted
+  /// frame it is refined by reported_distance(). A file that is as long as the rod is then aligned
+  /// by lengths along it instead, where that gives the smaller distance.
   [[nodiscard]] Alignment aligned(std::size_t way, const Placement& nearest,
                                   const Curve& curve) const;
-  /// Returns the best alignment of the thinned points.
   [[nodiscard]] Placement best_placement_of_thinned(const Shape& way, const Curve& curve) const;
   [[nodiscard]] Placement best_placement(const Shape& way, const Curve& curve) const;
   [[nodiscard]] Alignment finished(const Placement& placed, bool reversed,
@@ -68,7 +68,7 @@ class Aligner {
   double length_;
   AlignOptions options_;
   ArcLengths rule_ = ArcLengths::nearest;
-  // The polyline is at least as long as the rod, minus whole_rod_slack.
+  // Lengths along the points reach that of the rod, minus whole_rod_slack; false if they are given.
   bool covers_whole_rod_ = false;
   // With weights by length: as long as the rod within end_slack, so its ends are those of the rod.
   bool has_rod_ends_ = false;

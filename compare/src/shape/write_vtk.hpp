@@ -16,7 +16,7 @@ struct PointFields {
 
 /// Formats a shape as a legacy ASCII VTK file of one polyline, for ParaView and load_shape: points
 /// [m], and as point data arc_length_m and, where known, curvature_per_m, tension_N and d1.
-/// @param title  second line of the file, shortened to the length that the format allows
+/// @param title  second line of the file, shortened to 200 characters, in printable ASCII
 [[nodiscard]] std::string vtk_polyline(const Shape& shape, const PointFields& fields,
                                        const std::string& title);
 

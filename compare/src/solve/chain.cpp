@@ -39,7 +39,7 @@ void require_converged(const Scene& scene, const Result& result) {
   }
 }
 
-/// Returns std::nullopt if the chain is unstable out of its plane.
+/// Returns std::nullopt if the chain is unstable, in its plane or out of it.
 std::optional<Solution> solve_rigid_chain(const Scene& scene, const ForceModelSettings& settings,
                                           const Discretisation& discretisation,
                                           const ChainScene& chain, const SolveOptions& options) {

@@ -46,9 +46,9 @@ void add_twisting_torques(const force_model::Rod& rod, const Eigen::Matrix3Xd& p
                           std::vector<GripperLoad>& grippers);
 
 /// Returns twist, writhe and held turns of the parts between two frames for which writhe and held
-/// turns can be determined. Twist and writhe add up to
-/// the turns between the frames (Calugareanu, White, Fuller). No motion changes this sum unless the
-/// rod passes through itself, which changes it by two.
+/// turns can be determined. Twist and writhe add up to the turns between the frames (Calugareanu,
+/// White, Fuller). No motion changes this sum unless the rod passes through itself, which changes
+/// it by two.
 [[nodiscard]] std::vector<Linking> linking_of(const Scene& scene,
                                               const energy_model::Equilibrium& equilibrium);
 
@@ -56,10 +56,9 @@ void add_twisting_torques(const force_model::Rod& rod, const Eigen::Matrix3Xd& p
 /// prescribe; empty if they agree, or if the turns cannot be determined.
 [[nodiscard]] std::string turns_mismatch_message(const std::vector<Linking>& parts);
 
-/// Returns a message if turns are lost between two shapes of a motion; empty if not. Held turns
-/// refer to the shortest rotation between the directions of two clamps. If one direction passes the
-/// opposite of the other, held turns and writhe change by one turn in opposite senses; this counts
-/// as no loss.
+/// Returns a message if turns are lost between two shapes of a motion; empty if not, or if a part
+/// has no turns in one of them. Held turns refer to the shortest rotation between the directions of
+/// two clamps. A change by one turn is no loss if one direction passes the opposite of the other.
 [[nodiscard]] std::string turns_mismatch_message(const Scene& before,
                                                  const std::vector<Linking>& parts_before,
                                                  const Scene& after,

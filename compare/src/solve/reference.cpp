@@ -68,8 +68,8 @@ void mark_lost_turns(const Scene& scene, energy_model::Equilibrium& equilibrium)
 }
 
 /// Solves a soft rod that stretches, starting at the energy model's shape without stretch, because
-/// the search by multiple shooting is slow for it. Returns std::nullopt for other rods, and if the
-/// energy model finds no shape, as for a rod that is pulled straight.
+/// the search by multiple shooting is slow for it. Returns std::nullopt for other rods, and if one
+/// of the models finds no shape, such as `energy` for a rod that is pulled straight.
 std::optional<energy_model::Equilibrium> stretched_shape(const Scene& scene,
                                                          const energy_model::Problem& problem,
                                                          const energy_model::ExactOptions& exact) {

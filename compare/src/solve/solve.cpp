@@ -34,8 +34,8 @@ Eigen::Vector3d section_force(const Scene& scene, const Solution& solution, doub
   for (std::size_t i = 0; i < solution.grippers.size(); ++i) {
     if (before(scene.grippers[i].at)) sum += solution.grippers[i].force;
   }
-  // A contact that extends past `at` is omitted: its missing part acts across the rod and does not
-  // change the tension.
+  // A contact that extends past `at` is omitted. Its part before `at` acts across the rod on a
+  // plane; on a curved obstacle the tension within the contact lacks that part.
   for (const energy_model::ContactPart& contact : solution.contacts) {
     if (before(contact.end)) sum += contact.force;
   }
@@ -66,7 +66,6 @@ std::vector<double> all_on_rod(std::vector<double> arc_lengths, double length) {
   return arc_lengths;
 }
 
-/// Returns solution_of() with the effect of stretch.
 Solution solution_with_stretch_effect(const StretchedRod& of, Model model,
                                       const std::vector<double>& arc_lengths) {
   Solution solution =

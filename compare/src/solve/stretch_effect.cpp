@@ -16,8 +16,8 @@
 namespace dlo::compare {
 namespace {
 
-/// Returns an upper bound of the force in any cross-section [N]: half the sum of all forces, since
-/// the forces on both sides of a section balance.
+/// Returns an upper bound of the force in any cross-section of a rod without drag [N]: half the sum
+/// of all forces, since the forces on both sides of a section balance.
 double largest_force_bound(const Scene& scene, const energy_model::Equilibrium& rod) {
   double all = scene.weight_per_length().norm() * scene.length + scene.total_load_magnitude();
   for (const energy_model::Reaction& grip : rod.grips) all += grip.force.norm();
@@ -46,7 +46,7 @@ double largest_magnitude(const std::vector<double>& values) {
 
 /// Estimates the effect by the lowest shape of a rod that is longer by the mean strain, with the
 /// same weight and EI.
-/// @param own  solution of the rod, with tensions at equally spaced arc lengths
+/// @param solution  of the rod, with tensions at equally spaced arc lengths
 void estimate_by_longer_rod(const Scene& scene, const Solution& solution, double EA,
                             const SolveOptions& options, StretchEffect& effect) {
   double mean = 0;
@@ -91,7 +91,8 @@ bool stretch_matters(const StretchEffect& effect, const Scene& scene, const Solv
 /// PolygonResponse, or, where that does not apply, as for a rod that touches an obstacle, by the
 /// energy model's shape of a rod that is longer by the mean strain. The estimate is omitted if
 /// strain (1 + 1 / slack) does not exceed the target, because away from a bifurcation the effect is
-/// smaller than this product. It is also omitted if EA is unknown or grips hold the rod taut.
+/// smaller than this product. It is also omitted if EA or the tension is unknown, or if grips hold
+/// the rod taut.
 StretchEffect stretch_effect(const Scene& scene, Model model, const energy_model::Equilibrium& rod,
                              const SolveOptions& options) {
   StretchEffect effect;

@@ -10,7 +10,7 @@ namespace dlo::compare {
 struct StretchedRod {
   Scene scene;  ///< scene that was solved: Stretch::none or Stretch::counted
   energy_model::Equilibrium rod;
-  StretchEffect effect;  ///< effect on the shape without stretch; NaN if the scene counts stretch
+  StretchEffect effect;  ///< effect on the shape without stretch; NaN if that was not solved
   bool neglects_stretch = false;  ///< whether stretch is not modelled although it matters
   StretchDecision decision = StretchDecision::given;
 };

@@ -46,7 +46,7 @@ struct Frames {
 };
 
 /// Returns the scene with its grippers at the end of a frame: moved along +x and rotated about z as
-/// one body. The rotation changes the shape, the translation does not.
+/// one body. Without obstacles the rotation changes the shape, the translation does not.
 Scene moved(const Scene& scene, const BenchmarkOptions& options, int frame) {
   const double distance = (frame + 1) * frame_s * options.gripper_speed;
   const Eigen::AngleAxisd turn(distance / scene.length, Eigen::Vector3d::UnitZ());

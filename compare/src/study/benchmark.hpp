@@ -44,7 +44,6 @@ struct ForceVariant {
 
   /// Returns the force model's settings for a scene, with N points.
   [[nodiscard]] ForceModelSettings settings(const Scene& scene, int points) const;
-  /// Whether all members are equal.
   bool operator==(const ForceVariant&) const = default;
 };
 
@@ -146,7 +145,7 @@ void mark_pareto_front(std::vector<BenchmarkRun>& runs);
 /// model follows, and the force model makes the steps that fit into a frame on this machine
 /// (measured before; at least one), or one step with stepper implicit. The error is measured in
 /// every tenth frame, against the quasi-static shape of the reference model.
-/// @param scenes    empty: benchmark_scenes()
+/// @param scenes    empty: the paper's steel rod, and one with a hundredth of its modulus
 /// @param progress  called with the name of each scene
 /// @throws std::invalid_argument if an option is out of range, InputError, ConvergenceError
 [[nodiscard]] BenchmarkReport run_benchmark(const std::vector<Scene>& scenes,

@@ -79,7 +79,6 @@ class StaticRuns {
   bool next_round();
   /// Returns all runs so far, ordered by model, setting and run.
   [[nodiscard]] std::vector<BenchmarkRun> runs() const;
-  /// Returns the failed runs of programs so far.
   [[nodiscard]] const std::vector<BenchmarkFailure>& failures() const { return failures_; }
   /// Returns how the shapes of programs were interpreted, one line each.
   [[nodiscard]] const std::vector<std::string>& notes() const { return notes_; }

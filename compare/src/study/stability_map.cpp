@@ -197,8 +197,7 @@ std::vector<double> measured_limits(const StabilityMap& map, std::size_t columns
     const auto last = first + static_cast<std::ptrdiff_t>(rows);
     const auto limit = std::find_if(
         first, last, [](const MapPoint& point) { return point.outcome != Outcome::pass; });
-    // The grid has no bracket if the limit differs from its prediction by more than a factor of
-    // four.
+    // Without a bracket the limit differs from its prediction by at least a factor of four.
     if (limit == first || limit == last) continue;
     unstable[column] = limit->c_F;
     stable[column] = (limit - 1)->c_F;

@@ -80,6 +80,7 @@ struct MomentBalance {
 /// unless there are weight and other loads. Returns std::nullopt unless the rod is round, straight,
 /// of one section, held only at its ends, subject to nothing else, and bent, with at least six
 /// segments.
+/// @param scene  without drag and loads that follow the rod, which is not checked
 /// @param shape  shape of the whole rod, in the scene's frame
 /// @param power  exponent of 2 sin(angle / 2) in the moments of the springs, > 0; 1: EI kappa
 [[nodiscard]] std::optional<MomentBalance> moment_balance(const Scene& scene, const Shape& shape,

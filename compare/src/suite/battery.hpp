@@ -23,7 +23,6 @@ struct BatteryMotion {
   double end_time = 0;  ///< end time [s], > 0
   int frames = 0;       ///< number of requested frames, at equal intervals from 0 to `end_time`
 
-  /// Returns the times of the frames [s].
   [[nodiscard]] std::vector<double> times() const;
 };
 
@@ -68,7 +67,7 @@ namespace builtin {
 
 /// File of data/suite that is compiled into the library.
 struct SuiteFile {
-  std::string_view name;  ///< name in data/suite/suite.toml
+  std::string_view name;  ///< name in the folder data/suite
   std::string_view text;  ///< full text
 };
 

@@ -31,7 +31,7 @@ struct SceneKey {
   std::string value;    ///< form and dimension of its value, for people
   std::string missing;  ///< "required", or the default, for people
   std::string example;  ///< value as in a file
-  std::string words;    ///< sentences; empty for tables
+  std::string words;    ///< sentences; empty for most tables
   Range range;          ///< range of each number, or of the number of rows or tables
   Dimension dimension = Dimension::number;
   std::vector<std::string> excludes;  ///< keys of the table that may not be given too
@@ -54,7 +54,6 @@ struct SceneTable {
   [[nodiscard]] const SceneKey& key(std::string_view name) const;
 };
 
-/// Returns all tables of a scene file.
 [[nodiscard]] const std::vector<SceneTable>& scene_tables();
 
 /// Returns a table by its name. @throws std::out_of_range for an unknown name

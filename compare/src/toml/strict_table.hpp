@@ -47,8 +47,8 @@ class StrictTable {
   }
   Eigen::Vector3d vector(std::string_view key, Dimension dimension);
   std::optional<Eigen::Vector3d> optional_vector(std::string_view key, Dimension dimension);
-  /// Reads one number y, which means [0, y], a pair [x, y], or one to `most` rows of two numbers
-  /// each: [[x, y], ..]. Empty without the key.
+  /// Reads one number y, which means [0, y], a pair [x, y], or, if `most` > 1, up to `most` rows of
+  /// two numbers each: [[x, y], ..]. Empty without the key.
   std::vector<Eigen::Vector2d> pairs(std::string_view key, Dimension dimension, std::size_t most);
 
   /// Reads a table of a scene from here on: dimensions, ranges and required keys are those of its
@@ -106,7 +106,7 @@ class StrictTable {
   /// @throws InputError that names the first key that was not read, and the allowed keys
   void finish() const;
 
-  /// Returns "file:line" of this table.
+  /// Returns "file:line" of this table; "file" if it was made in code.
   [[nodiscard]] std::string where() const { return where(nullptr); }
 
   /// Throws an InputError "file:line: key = value: problem", without " = value" if the key is

@@ -44,8 +44,8 @@ struct PoseKeys {
   const char* position = "position";  ///< key of the position
   /// Reads a pose's direction; empty: the object has neither direction nor roll.
   std::function<Eigen::Vector3d(StrictTable&)> direction;
-  /// Arc length at which a gripper holds the rod [m]; its file may then contain markers. Empty: the
-  /// object is not a gripper.
+  /// Arc length at which a gripper holds the rod [m]; the file of a clamp may then contain markers.
+  /// Empty: the object is not a gripper.
   std::optional<double> at = std::nullopt;
 };
 
@@ -74,8 +74,8 @@ struct PoseKeys {
 /// them. From the positions a and b of the markers at arc lengths s_1 < s_2 follows
 ///     direction = (b - a) / |b - a|,   position = (a + b) / 2 + (at - (s_1 + s_2) / 2) direction,
 /// which is the least-squares fit to both. Each marker has its own times: between them its position
-/// is that of its Trajectory. Poses are at the times of the marker with more rows, while both are
-/// observed.
+/// is that of its Trajectory. Poses are at the times, while both are observed, of the marker that
+/// then has more rows.
 /// @param at      arc length at which the gripper holds the rod [m]
 /// @param cutoff  each marker is smoothed separately, as by smooth_poses() [Hz]; empty: not
 /// smoothed

@@ -18,7 +18,7 @@ struct WireNumber {
   /// Description of the number; its value is not used, and an infinite deviation means no prior.
   FittedNumber described;
   double difference_step =
-      0;  ///< stride of differences, in the number's unit; 0: no shape depends on it
+      0;  ///< stride of differences, in the number's unit; 0: the number is not fitted
   std::function<void(Scene&, double)> change;
   int term = 0;  ///< index of the term of natural curvature; 0 for all other numbers
   double longest_step = std::numeric_limits<double>::infinity();  ///< longest step for which the
@@ -52,11 +52,11 @@ struct WireNumber {
 
 /// Returns the scenes with d1 stated explicitly at the first clamp if natural curvature and
 /// directions or rolls are fitted, else unchanged. Scenes of flat shapes, without a clamp, or that
-/// state d1 are unchanged too. A fit may rotate this clamp out
-/// of the scene's plane, which would otherwise define d1. If the scene determines d1 only up to
-/// `roll_tolerance`, d1 is level.
+/// state d1 are unchanged too. A fit may rotate this clamp out of the scene's plane, which would
+/// otherwise define d1. If the scene determines d1 only up to `roll_tolerance`, d1 is level.
 /// @param measured  a shape of each scene; a flat one was measured in the scene's plane, which
 /// determines d1
+/// @throws InputError as Scene::first_frame(), without `roll_tolerance`
 [[nodiscard]] std::vector<Scene> with_nominal_frames(std::vector<Scene> scenes,
                                                      const MeasuredShapes& measured,
                                                      const MaterialFitOptions& options);

@@ -45,7 +45,6 @@ struct WireProblem {
   /// shape does not depend on E. The search covers at least two decades below the scene's E, unless
   /// MaterialFitOptions::smallest_ratio ends it earlier.
   [[nodiscard]] double lowest() const;
-  /// Returns the options of the iteration.
   [[nodiscard]] GaussNewtonOptions steps() const;
   /// Returns the options of a fit from which another one starts.
   [[nodiscard]] GaussNewtonOptions coarse_iteration_options() const;
@@ -61,9 +60,9 @@ struct WireErrors {
   double variance = 0;          ///< variance of a coordinate; given, or from the residuals [m^2]
   double freedom = 0;           ///< degrees of freedom of the residuals
   /// Sum of squares of the residuals divided by the variance, and its degrees of freedom. For
-  /// independent errors the sum includes the priors' terms. For
-  /// correlated errors these are Satterthwaite's, since residuals determine the correlation length
-  /// hardly better than their variance.
+  /// independent errors the sum includes the priors' terms. For correlated errors these are
+  /// Satterthwaite's, since residuals determine the correlation length hardly better than their
+  /// variance.
   double sum_of_squares = 0;
   double freedom_of_squares = 0;
 
@@ -105,7 +104,6 @@ class WireOptimum {
   /// linear theory.
   [[nodiscard]] std::optional<double> end(double side);
 
-  /// Returns the alignments of the shapes.
   [[nodiscard]] std::vector<Alignment> alignments();
 
  private:
