@@ -22,7 +22,7 @@ struct SceneChoices {
 
 /// Returns a scene file of one clamp at the origin, with every key of scene_tables(), its words,
 /// its units and what is allowed. Lines that begin with # and no blank are optional parts; the file
-/// is valid with any of these paragraphs, and with all of them, uncommented.
+/// of a slender rod is valid with any of these paragraphs, and with all of them, uncommented.
 /// @throws InputError that names rod.length and the like, as reading the file does, also for a rod
 /// that is thicker than long
 [[nodiscard]] std::string scene_text(const SceneChoices& choices,

@@ -50,8 +50,8 @@ std::vector<PlannedSpan> spans_of(const Scene& scene) {
   return spans;
 }
 
-/// Returns the parts between neighbouring clamps that hold frames, as far as the grippers alone
-/// determine them.
+/// Returns the parts between neighbouring clamps that hold frames. Their turn is the difference of
+/// the rolls; NaN if both clamps have a d1.
 std::vector<PlannedTwist> twists_of(const Scene& scene) {
   std::vector<PlannedTwist> twists;
   const std::vector<std::size_t> framed = framed_grippers(scene);
@@ -67,7 +67,8 @@ std::vector<PlannedTwist> twists_of(const Scene& scene) {
   return twists;
 }
 
-/// Returns the shape of the rod; std::nullopt if the energy model finds none, as for a taut rod.
+/// Returns the shape of the rod; std::nullopt if the energy model finds none, as for a taut rod, or
+/// does not support the scene.
 /// @param[out] why  the reason
 std::optional<energy_model::Equilibrium> rod_shape(const Scene& scene, double time_limit,
                                                    std::string& why) {
@@ -161,7 +162,8 @@ Neglected neglected_friction(const Plan& plan) {
                        : "no contact in this shape; friction could hold a shape that touches"};
 }
 
-/// Sets the effect of neglecting something: the distance from the lowest shape without it.
+/// Sets the effect of neglecting something, the distance from the lowest shape without it, if time
+/// is left and that shape is found.
 void set_neglect_effect(const Scene& without, const energy_model::Equilibrium& rod,
                         double time_limit, Neglected& item) {
   if (!(time_limit > 0)) return;

@@ -46,7 +46,8 @@ class UnitError : public InputError {
   using InputError::InputError;
 };
 
-/// Returns the value in SI units of "210 GPa", "2 mm" or "-175 deg".
+/// Returns the value in SI units of "210 GPa", "2 mm" or "-175 deg". A unit is required, except for
+/// Dimension::number, which has none.
 /// @throws InputError without the file's name: the error and what is allowed
 [[nodiscard]] double parse_quantity(std::string_view text, Dimension dimension);
 

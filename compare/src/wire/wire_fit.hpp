@@ -16,8 +16,8 @@ namespace dlo::compare {
 /// evaluations, `assumed`, `chains`, and what only searches for other options set (`common_share`,
 /// `alternatives`, `tried`).
 /// @param measured  the shapes, with their time limit
-/// @throws InputError as wire_numbers(); ConvergenceError if the iteration does not converge, or
-/// the time limit is exceeded
+/// @throws InputError as wire_numbers(), or if too few coordinates are measured to estimate noise;
+/// ConvergenceError if a shape has no equilibrium near the fit, or the time limit is exceeded
 [[nodiscard]] MaterialFit fit_wire(const std::vector<Scene>& scenes,
                                    const std::vector<MeasuredShape>& shapes,
                                    MeasuredShapes& measured, const MaterialFitOptions& options,

@@ -49,7 +49,8 @@ struct WireProblem {
   /// Returns the options of a fit from which another one starts.
   [[nodiscard]] GaussNewtonOptions coarse_iteration_options() const;
 
-  /// Minimises the deviance. @throws ConvergenceError if the iteration does not converge
+  /// Minimises the deviance. @throws as GaussNewton::descend(), and ConvergenceError if a shape has
+  /// no equilibrium at the values or at neighbouring ones
   void descend(GaussNewton& fit) const;
 };
 
@@ -75,7 +76,7 @@ class WireOptimum {
   /// Finds the most likely values.
   /// @param problem  must outlive this, as must the rods with all its numbers
   /// @param start  initial values
-  /// @throws ConvergenceError if the iteration does not converge, or the time limit is exceeded
+  /// @throws as WireProblem::descend()
   WireOptimum(const WireProblem& problem, FittedRods& rods, const Eigen::VectorXd& start);
 
   [[nodiscard]] const GaussNewton& fit() const { return *fit_; }
