@@ -17,8 +17,8 @@ enum class MissingElements {
 };
 
 /// A scene file whose fields can be given other values. The values are set in the parsed TOML,
-/// which the ordinary reader then reads: a field may have any value that is valid in a scene
-/// file, except true, false, tables and texts that are numbers.
+/// which the ordinary reader then reads. A field may have any value that is valid in a scene file,
+/// except true, false, tables and texts that are numbers.
 ///
 /// A material that is given by name can be varied in parts, as rod.material.youngs_modulus. The
 /// derived field `gamma` scales gravity so that w l^3 / (EI) has its value, whatever else is

@@ -32,10 +32,10 @@ namespace dlo::compare {
                                                         const Eigen::Matrix3Xd& points,
                                                         const std::vector<GripperLoad>& grippers);
 
-/// Returns the largest Imbalance::share() that is allowed for a polygon that has not come to rest:
-/// allowed_imbalance plus the sum of the changes of all forces, or all moments, by the step to
-/// rest, divided by the largest one. The forces balance after the step, so their sum before it
-/// cannot be larger.
+/// Returns the largest Imbalance::share() that is allowed for a polygon that has not come to rest.
+/// It is allowed_imbalance plus the changes of all forces, or all moments, by the step to rest,
+/// divided by the largest one. The forces balance after the step, so their sum before it cannot be
+/// larger.
 /// @param to_rest  Newton's step from each point [m]
 [[nodiscard]] double allowed_rest_imbalance(const force_model::Rod& rod,
                                             const Eigen::Matrix3Xd& points,

@@ -33,7 +33,7 @@ constexpr const char* file_allowed =
     "two "
     "markers on a gripper, time,s,x,y,z)";
 
-/// Returns the problem of a pose in Trajectory's message, without the name of the class.
+/// Returns the message of Trajectory or smooth_poses() without that name.
 std::string problem_of_pose(const std::invalid_argument& error) {
   const std::string_view message = error.what();
   const std::size_t name = message.find(": ");
