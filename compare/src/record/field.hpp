@@ -137,7 +137,6 @@ template <typename Value>
 [[nodiscard]] Json json_or_null(const std::optional<Value>& value) {
   return value ? Json(*value) : Json();
 }
-/// Returns the text; null if it is empty.
 [[nodiscard]] inline Json text_or_null(const std::string& text) {
   return text.empty() ? Json() : Json(text);
 }

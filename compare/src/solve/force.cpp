@@ -196,7 +196,6 @@ std::string not_at_rest_message(const Scene& scene, const ForceModelSettings& se
             "steps");
 }
 
-/// Adds to a solution how the shape at rest was found.
 void add_relax_result(const RelaxedRod& rest, Solution& solution) {
   const force_model::Simulation& simulation = rest.simulation;
   solution.model = Model::force;

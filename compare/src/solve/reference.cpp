@@ -132,7 +132,6 @@ energy_model::Equilibrium exact_shape(const Scene& scene, const energy_model::Pr
   return confirmed;
 }
 
-/// Whether a shape enters an obstacle of the scene.
 bool enters_obstacle(const Scene& scene, const energy_model::Equilibrium& shape) {
   constexpr int samples = 401;
   const Eigen::Matrix3Xd points = shape.sample(equal_arc_lengths(scene.length, samples)).points;

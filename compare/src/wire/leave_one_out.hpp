@@ -40,7 +40,6 @@ using Predict = std::function<PredictedScene(std::size_t excluded)>;
                                        const MaterialFitOptions& options, const MaterialFit& fit,
                                        const Predict& predict);
 
-/// Returns all values except one.
 template <typename Value>
 [[nodiscard]] std::vector<Value> without_one(std::vector<Value> values, std::size_t excluded) {
   values.erase(values.begin() + static_cast<std::ptrdiff_t>(excluded));
