@@ -16,7 +16,7 @@ namespace {
 /// input.
 constexpr double parallel_tolerance = 1e-10;
 
-/// Returns the vectors, of length 1 or less, that a free rotation must not change.
+/// Returns the vectors, scaled to a length of about 1, that a free rotation must not change.
 std::vector<Eigen::Vector3d> rotation_invariants(const Span& span) {
   std::vector<Eigen::Vector3d> invariants;
   const double load = std::max(span.total_load(), 1e-300);

@@ -82,10 +82,10 @@ double half_size(const obstacle::Body& body, const Eigen::Vector3d& direction) {
 }
 
 /// Returns a unit direction normal to the path; the body may be passed on that side and on the
-/// opposite one. The direction lies in the plane of a planar span, is normal to the axis of an
-/// endless body, and otherwise lies in the plane of the loads, or is arbitrary if these have no
-/// component across the path. Returns std::nullopt if the body is endless along the path or on two
-/// axes.
+/// opposite one. It is normal to the axis of an endless body. For other bodies it lies in the plane
+/// of a planar span, or in space in the plane of path and loads. It is arbitrary if the loads have
+/// no component across the path. Returns std::nullopt if the body is endless along the path or on
+/// two axes.
 std::optional<Eigen::Vector3d> side_of_path(const Span& span, const obstacle::Body& body,
                                             const Eigen::Vector3d& along) {
   std::vector<Eigen::Vector3d> infinite_axes;
@@ -182,8 +182,7 @@ class PinnedSpans {
 
   /// Adds a copy of the span for each choice of the sides on which an interval passes the bodies.
   /// Paths with a point in a rigid obstacle are omitted, and so are copies beyond most_spans.
-  /// @param row    one or two bodies, in any order
-  /// @param reach  the interval
+  /// @param row  one or two bodies, in any order
   void add_spans_past(std::vector<const obstacle::Body*> row, const PathInterval& reach) {
     const auto distance = [&](const obstacle::Body* body) {
       return (body_middle(*body, reach.from) - reach.from).norm();

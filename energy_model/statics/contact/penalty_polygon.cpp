@@ -70,7 +70,7 @@ double highest_corner(const obstacle::Body& body, const obstacle::Body& ground,
 /// Returns a block extended into a half-space that its face touches or lies within: a polygon
 /// pushed out of that face would be caught between the block and the half-space.
 obstacle::Body extended_to_half_space(const obstacle::Body& body, const Span& span) {
-  constexpr double flush_height = 1e-6;  // largest height of a flush face [l]
+  constexpr double flush_height = 1e-6;  // largest height of a flush face / span length
   std::array<Eigen::Vector3d, 2> corners = {body.lower().array() - body.radius(),
                                             body.upper().array() + body.radius()};
   if (!(corners[1] - corners[0]).allFinite() ||
@@ -312,7 +312,8 @@ class PenaltyRelaxation {
     return depth > 0 ? moment / depth : begin;
   }
 
-  /// Adds the contacts of a rigid obstacle: runs of consecutive points within it.
+  /// Adds the contacts of a rigid obstacle: runs of consecutive points within it, each at one of
+  /// its features. A short run at a grip is omitted.
   void add_contacts(const Span::Obstacle& obstacle, const Eigen::Matrix3Xd& points,
                     PenaltyPolygon& result) const {
     // The clearance is also sampled within segments.

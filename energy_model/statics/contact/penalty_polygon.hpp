@@ -49,7 +49,7 @@ enum class Segments {
 
 /// Descent strategy of a polygon.
 enum class Descent {
-  far,   ///< large steps, with soft segments at first: fast, may reach any minimum
+  far,   ///< large steps, from a shape with soft segments at first: fast, may reach any minimum
   near,  ///< small steps with stiff segments: reaches the minimum near the start
 };
 
@@ -70,7 +70,7 @@ enum class Descent {
 /// an obstacle on either side: first single obstacles, nearest to the anchor first, then pairs; at
 /// most ten copies. Between two grips such a shape continues to the second grip; beyond the
 /// outermost grip the rod hangs from the obstacle. There is no copy for half-spaces, for obstacles
-/// that the rod is too short to pass, and for paths through a rigid obstacle.
+/// that the rod is too short to pass, and for paths with a pin within a rigid obstacle.
 [[nodiscard]] std::vector<Span> pinned_past_obstacles(const Span& span);
 
 }  // namespace dlo::energy_model

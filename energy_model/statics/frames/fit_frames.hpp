@@ -16,7 +16,7 @@ inline constexpr int most_fit_steps = 3;
                                   int most_steps, RodFrames::State& scratch);
 
 /// Returns the unknowns of the same shape with the rod's frame rotated about the tangent by the
-/// angles `roll` at the nodes [rad]; for three fields.
+/// angles `roll` at the nodes [rad]; for three fields. The frame at the start is not rotated.
 [[nodiscard]] Eigen::VectorXd rolled(const RodFrames& frames, const Eigen::VectorXd& x,
                                      const Eigen::VectorXd& roll);
 
@@ -35,8 +35,8 @@ struct FrameRates {
   Eigen::Vector3d spin_rate = Eigen::Vector3d::Zero();
 };
 
-/// Computes angular velocities and accelerations in space,
-///     omega_s = R u',  alpha_s = R u'' + omega x R u',
+/// Computes angular velocities and accelerations in space from the strains' time derivatives,
+///     d omega / ds = R u_t,  d alpha / ds = R u_tt + omega x R u_t,
 /// by the same collocation as the directors.
 [[nodiscard]] FrameSpins frame_spins(const RodFrames& frames, const RodFrames::State& state,
                                      const FrameRates& rates);

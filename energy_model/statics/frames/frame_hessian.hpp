@@ -15,7 +15,8 @@ class FrameHessian {
   /// Adds the second derivatives to `hessian`, and computes state.ends as
   /// RodFrames::end_rotation_jacobian() does.
   /// @param f           gradient of the function, with its part by the nodes
-  /// @param curvatures  second derivatives of f by rotations of the frames at the ends of elements
+  /// @param curvatures  second derivatives of f by rotations of the frame at each element's end;
+  ///   not read if f.couples is empty
   /// @param state       of the last RodFrames::evaluate()
   void add(const RodFrames& frames, const FrameGradient& f,
            std::span<const Eigen::Matrix3d> curvatures, RodFrames::State& state,

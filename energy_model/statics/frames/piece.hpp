@@ -7,8 +7,8 @@
 
 namespace dlo::energy_model {
 
-/// An element: a smooth part of a span. Elements end at loads, grips and section changes, where
-/// curvature has kinks or jumps, and where the boundary layers at a soft rod's clamps have decayed.
+/// An element: a smooth part of a span. Elements end where curvature may have kinks or jumps, at
+/// loads, grips, contacts and section changes, and where boundary layers have decayed.
 /// On an element the elastic part of a strain is a series in orthonormal Legendre polynomials p_k
 /// on [0, 1], scaled so that its energy is half the sum of the squares of the coefficients.
 struct Element {

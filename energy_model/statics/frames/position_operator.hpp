@@ -35,9 +35,9 @@ class PointOperator {
   [[nodiscard]] Eigen::Matrix3Xd positions(const Eigen::MatrixX3d& tangents) const {
     return to_points(tangents).transpose();
   }
-  /// Returns Reach^T A, points x columns of A. @param by_node  A, nodes x columns
+  /// Returns W^T A with the weights W, nodes x points. @param by_node  A, nodes x columns
   [[nodiscard]] Eigen::MatrixXd to_points(const Eigen::MatrixXd& by_node) const;
-  /// Computes Reach B, nodes x columns of B. @param by_point  B, points x columns
+  /// Computes W B with the weights W, nodes x points. @param by_point  B, points x columns
   /// @param[out] by_node  nodes x columns
   void to_nodes(const Eigen::MatrixXd& by_point, Eigen::Ref<Eigen::MatrixXd> by_node) const;
 
@@ -112,9 +112,9 @@ class SpanPointOperator {
   [[nodiscard]] const Eigen::VectorXd& weights() const { return weights_; }
   /// Returns weights(), each multiplied by a quantity per length that is constant on each element.
   [[nodiscard]] Eigen::VectorXd weights_with_density(const std::vector<double>& per_length) const;
-  /// Returns Reach^T A, points x columns of A. @param by_node  A, nodes x columns
+  /// Returns W^T A with the points' position weights W. @param by_node  A, nodes x columns
   [[nodiscard]] Eigen::MatrixXd to_points(const Eigen::MatrixXd& by_node) const;
-  /// Returns Reach B, nodes x columns of B. @param by_point  B, points x columns
+  /// Returns W B with the points' position weights W. @param by_point  B, points x columns
   [[nodiscard]] Eigen::MatrixXd to_nodes(const Eigen::MatrixXd& by_point) const;
 
  private:

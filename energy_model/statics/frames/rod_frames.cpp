@@ -34,7 +34,7 @@ void add_product_with_twist(const ConstRows& q, const ConstStrains& u, double sc
 
 /// Computes from_rotation_vector(); for a small angle by the series of sine and cosine.
 Eigen::Quaterniond step_rotation(const Eigen::Vector3d& v) {
-  constexpr double small = 0.04;  // square of the angle, whose fifth power is below rounding
+  constexpr double small = 0.04;  // square of the angle; the omitted terms are below rounding
   const double z = v.squaredNorm();
   if (!(z < small)) return from_rotation_vector(v);
   // Each nested factor multiplies by the inverse of an integer: this is called once per node.

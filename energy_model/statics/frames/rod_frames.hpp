@@ -27,11 +27,11 @@ struct FrameGradient {
 /// their energy is half the sum of the squares of the coefficients. This parametrisation has no
 /// poles.
 ///
-/// A round rod that is intrinsically straight and whose grips leave the twist free needs two
-/// fields, u = (u1, u2, 0): d1 and d2 do not rotate about the tangent (Bishop's frame). Natural
-/// strains and the principal axes of a section that is not round are fixed to the material and
-/// require the field u3 too. For a straight rod with such a section the natural strains are given,
-/// as zero.
+/// A round rod that is intrinsically straight needs two fields, u = (u1, u2, 0), even if clamps
+/// twist it (SpanUnknowns::has_psi): d1 and d2 do not rotate about the tangent (Bishop's frame).
+/// Natural strains and the principal axes of a section that is not round are fixed to the material
+/// and require the field u3 too. For a straight rod with such a section the natural strains are
+/// given, as zero.
 ///
 /// Unknowns x: the coefficients of u1, element by element, then of u2, then of u3. If no clamp
 /// fixes the start, each field begins with a component of the rotation vector, in the start frame,

@@ -44,7 +44,6 @@ class Sampler {
     }
   }
 
-  /// Computes the sample number i, at an arc length.
   void evaluate_at(double at, Eigen::Index i, Samples& samples) {
     std::size_t e = 0;
     while (e + 1 < elements_.size() && at > elements_[e].element.end()) ++e;

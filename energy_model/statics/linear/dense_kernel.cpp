@@ -27,7 +27,6 @@ inline Lanes read_lanes(const double* from) { return *reinterpret_cast<const Sto
 inline void write_lanes(double* to, Lanes value) { *reinterpret_cast<StoredLanes*>(to) = value; }
 inline std::ptrdiff_t smaller(std::ptrdiff_t a, std::ptrdiff_t b) { return a < b ? a : b; }
 
-/// Adds factor * from to `to`.
 inline void add_multiple(const double* from, double factor, std::ptrdiff_t size, double* to) {
   std::ptrdiff_t i = 0;
   for (; i + lane_count <= size; i += lane_count) {

@@ -94,8 +94,8 @@ class ReducedHessian {
   [[nodiscard]] bool factor(double mu, Eigen::MatrixXd& lower) const;
   /// Tridiagonal matrix of Lanczos' method on the inverse of Z^T H Z; its vectors are in krylov_.
   struct Lanczos {
-    Eigen::VectorXd diagonal, off_diagonal;  // diagonal and off-diagonal
-    double largest = 0;                      // largest eigenvalue
+    Eigen::VectorXd diagonal, off_diagonal;
+    double largest = 0;  // largest eigenvalue
   };
   [[nodiscard]] Lanczos run_lanczos(double settled, Eigen::Index most_steps);
 

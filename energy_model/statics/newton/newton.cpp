@@ -244,7 +244,7 @@ class NewtonIteration {
   NewtonBuffers& buffers_;
   NewtonStep step_;
   bool step_is_next_ = false;  // buffers_.step is already the step from the present point
-  double residual_norm_ = 0;   // norm of the residual
+  double residual_norm_ = 0;
   std::shared_ptr<SpanPoint> trial_;
 };
 

@@ -21,7 +21,6 @@ class NewtonStep {
   void use_given_factor();
   /// Factors at the present solution.
   void factor();
-  /// Returns the point at which the current factor was computed.
   [[nodiscard]] FactorPoint factor_point() const { return factor_point_; }
   /// Whether the factor belongs to another shape.
   [[nodiscard]] bool is_borrowed() const { return factor_point_ == FactorPoint::neighbour; }

@@ -89,8 +89,9 @@ struct TrustRegionOptions {
 ///
 /// Status `converged` means that the projected gradient is at most `handover_gradient` times 1 +
 /// load and H has no eigenvalue below -`zero_eigenvalue_limit`, or that a minimum is within
-/// `nearest`. If the steps or the radius have ended before, the status is `roundoff_limited`. The
-/// multipliers are stored in the solution.
+/// `nearest`, or that no direction is free. If the steps or the radius have ended before, the
+/// status is `roundoff_limited`. If c = 0 cannot be restored at the start, it is `failed` and x is
+/// kept. The multipliers are stored in the solution.
 void descend_in_trust_region(SpanSolution& solution, const TrustRegionOptions& options);
 
 /// Descends from solution.x to a point near a minimum of the energy under the constraints c = 0,

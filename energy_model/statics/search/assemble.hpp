@@ -20,7 +20,7 @@ struct PlacedShape {
   Eigen::Matrix3d to_space;  ///< rotation from the span's frame
   Eigen::Vector3d anchor;    ///< [m]
   /// Function of s: angle about the span's tangent from SpanShape's d1 to the material's d1 [rad];
-  /// empty: the rod has no material directors.
+  /// empty for a round straight rod that clamps do not twist, or of which a span has no shape.
   std::function<double(double)> ahead;
 };
 

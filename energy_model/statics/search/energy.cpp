@@ -72,8 +72,8 @@ std::vector<Equilibrium> combine(const Problem& problem, const std::vector<Place
   return result;
 }
 
-/// Returns the total energies of the combinations of the spans' stable equilibria, lowest first, at
-/// most `most_combinations` [J].
+/// Returns the total energies of the combinations of the spans' stable equilibria without missing
+/// turns, lowest first, at most `most_combinations` [J].
 /// @param lowest  the combination of the spans' first equilibria
 std::vector<double> stable_energies(const Problem& problem, const Equilibrium& lowest,
                                     const std::vector<std::vector<SpanSolution>>& solutions) {
@@ -98,8 +98,7 @@ std::vector<double> stable_energies(const Problem& problem, const Equilibrium& l
 
 /// Stores the energies of the stable equilibria and the number of passing starts in each
 /// equilibrium.
-/// @param solutions  solutions of each span
-/// @param result     the lowest equilibrium, or all combinations of `solutions`
+/// @param result  the lowest equilibrium, or all combinations of `solutions`
 void note_search(const Problem& problem, const std::vector<std::vector<SpanSolution>>& solutions,
                  int other_side_starts, std::vector<Equilibrium>& result) {
   std::vector<double> energies;
@@ -175,7 +174,6 @@ class EnergySolver::State {
     }
   }
 
-  /// Log of the last solve().
   [[nodiscard]] const SearchLog& log() const { return log_; }
   /// Whether the last solve() followed the last shape of every span.
   [[nodiscard]] bool followed() const { return followed_; }

@@ -170,8 +170,8 @@ class TwistedSpan {
         workspace_(workspace),
         held_(*placed.frames) {}
 
-  /// Returns std::nullopt if the known shape has other turns than are prescribed, or if no
-  /// equilibrium is found from it.
+  /// Returns std::nullopt if the known shape has no twist of this span or other turns than are
+  /// prescribed (with material directors: another homotopy class), or if no equilibrium is found.
   [[nodiscard]] std::optional<SpanSolution> from_known(const Equilibrium& start) const {
     const double l = problem_.length;
     const TwistedPart* part = known_twist(start, placed_, l);

@@ -49,8 +49,9 @@ struct Remembered {
 
 /// Solves a span between clamps that prescribe frames: from a shape whose twist is known, if there
 /// is one; otherwise without twist, after which the clamp is rotated from the best shape, or from
-/// each stable one if all equilibria are wanted. The list is never empty, best first.
-/// @param start  null: none is known
+/// each stable one if all equilibria are wanted. With Approach::descend_only, only `start` is
+/// relaxed. The list is never empty, best first.
+/// @param start  null: none is known; not null with Approach::descend_only
 /// @param memory  of the last call, empty if nothing is to be followed; the shape without twist is
 ///   updated
 [[nodiscard]] std::vector<SpanSolution> solve_twisted(const PlacedSpan& placed,

@@ -53,12 +53,11 @@ constexpr int most_branch_jumps = 60;
 constexpr double first_displacement = 0.1;
 constexpr int most_displacements = 4;
 
-/// Truncation tolerances of a path: coefficients that contribute a smaller angle [rad] are added
-/// only at the end. The second value is used if the path with the first one fails.
+/// Truncation tolerances of a path, in rod lengths: coefficients that contribute less to positions
+/// are added only at the end. The second value is used if the path with the first one fails.
 constexpr double coarse_tolerance = 1e-5;
 constexpr double fine_tolerance = 1e-6;
 
-/// Smallest number of coefficients of a path.
 constexpr int least_path_terms = 8;
 
 /// Returns the angle about `axis` from a to the component of b normal to it, in (-pi, pi].
@@ -69,7 +68,7 @@ double angle_about(const Eigen::Vector3d& axis, const Eigen::Vector3d& a,
 
 class TwistPath {
  public:
-  /// @param tolerance  coefficients that contribute a smaller angle [rad] are left out
+  /// @param tolerance  coefficients that contribute less to positions [l] are omitted
   TwistPath(const Span& span, double stiffness, const UntwistedShape& untwisted,
             const SpanOptions& options, double tolerance, SpanWorkspace& workspace)
       : span_(in_space(span)),

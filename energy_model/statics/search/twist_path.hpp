@@ -13,7 +13,9 @@ inline constexpr int unknown_terms = 24;
 /// The end frame that prescribes a span's twist.
 struct EndFrame {
   Eigen::Vector3d d1;  ///< see Span::Twist::end_d1
-  double twist;        ///< twist of the rod relative to the untwisted shape [rad]
+  /// Twist [rad]: relative to the untwisted shape for twist_to(), SpanEnergy::twist() for
+  /// twist_from().
+  double twist;
 };
 
 /// A shape of a span without prescribed twist, planar or not.

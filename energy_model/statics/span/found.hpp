@@ -40,7 +40,6 @@ class SearchLog {
   std::vector<std::string> omitted_;
 };
 
-/// Adds to the log if there is one.
 inline void log_tried(SearchLog* log, const std::string& strategy) {
   if (log != nullptr) log->count_tried(strategy);
 }

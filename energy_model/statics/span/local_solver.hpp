@@ -82,12 +82,11 @@ class LocalSolver {
   [[nodiscard]] int terms() const;
   /// Returns the number of coefficients for a descent; Newton's method follows with all of them.
   [[nodiscard]] int coarse_terms() const;
-  /// Returns a solution with a model but without unknowns.
   [[nodiscard]] SpanSolution empty_solution(int terms) const {
     return workspace_.empty_solution(span_, terms);
   }
 
-  /// Runs Newton's method with the span's load and the search's deadline.
+  /// Runs Newton's method with the search's deadline instead of `how.deadline`.
   void newton(SpanSolution& solution, NewtonOptions how = {}) const;
   /// Solves from an initial guess, with as many coefficients as are needed to satisfy the
   /// constraints.

@@ -30,14 +30,16 @@ struct NegativeCurvature {
 [[nodiscard]] std::optional<NegativeCurvature> negative_curvature(const SpanSolution& solution);
 
 /// Descends from an unstable equilibrium along its direction of negative curvature to a minimum
-/// below, out of its plane if it is unstable only there. Returns std::nullopt if no such direction
-/// is found. The result is not certified.
+/// below, out of its plane if it is unstable only there. On soft obstacles the mode nearest
+/// zero replaces a missing direction; otherwise returns std::nullopt if there is none. The result
+/// is not certified, and no equilibrium if the descent fails.
 [[nodiscard]] std::optional<SpanSolution> leave_saddle(const SpanSolution& solution,
                                                        const SpanOptions& options,
                                                        SpanWorkspace& workspace);
 
 /// Searches for saddles between pairs of equilibria found, by Newton's method from points on the
-/// line between their unknowns: between two minima there is a pass, and a saddle on it.
+/// line between their unknowns: between two minima there is a pass, and a saddle on it. Like
+/// search_adjacent(), it needs SpanOptions::log.
 void search_between(const SpanOptions& options, SpanWorkspace& workspace, Found& found);
 
 /// Searches for equilibria next to those found, including the new ones, by Newton's method from
@@ -46,7 +48,7 @@ void search_between(const SpanOptions& options, SpanWorkspace& workspace, Found&
 void search_adjacent(const SpanOptions& options, SpanWorkspace& workspace, Found& found);
 
 /// Solves for the equilibrium near SpanOptions::start and certifies it, by Newton's method or by
-/// descent as the start requests, and by the other method if the result is unstable or far from a
+/// descent as the start requests, and by the other method if the result is not stable or far from a
 /// known shape, except for Approach::follow_only. A saddle is replaced by the equilibrium below it,
 /// if that is stable, in two cases: only a descent is allowed (Approach::descend_only), or the
 /// start is a known shape and not Approach::follow_only.

@@ -139,7 +139,6 @@ class Refinement {
     return K + more;
   }
 
-  /// Solves with more coefficients.
   [[nodiscard]] SpanSolution with_terms(const SpanSolution& solution, int terms) {
     SpanSolution finer = on_.workspace().with_terms(solution, terms);
     const Eigen::VectorXd x = finer.x;

@@ -19,7 +19,7 @@ inline constexpr int most_unknowns = 480;
 
 /// Method by which an equilibrium is sought from a given start.
 enum class Approach {
-  follow,        ///< Newton's method, to the equilibrium near it, stable or not
+  follow,        ///< Newton's method to the equilibrium near it; a descent if that is not stable
   follow_only,   ///< Newton's method from a known shape; nothing else is tried if it fails
   descend,       ///< descent to a minimum
   descend_only,  ///< descent; no search follows if it finds no equilibrium

@@ -194,7 +194,6 @@ class Search {
                               " found, which were not followed downhill");
   }
 
-  /// Number of starts that are followed in any case.
   [[nodiscard]] std::size_t followed_start_count() const {
     const bool is_predictable = !span_.has_material_directors() && span_.soft_obstacles.empty();
     return is_predictable ? followed_starts : more_followed_starts;

@@ -196,9 +196,10 @@ TangentField field(Tangent tangent) {
 }
 
 /// Returns a shape from a clamp down onto an obstacle and along it. It reaches the obstacle over
-/// (72 EI h / w)^(1/4), as a rod of small slopes does under its weight w from the height h. Returns
-/// std::nullopt if the obstacle is not a half-space, if the weight does not press the rod onto it,
-/// if the clamp is nearly normal to it, or if the rod does not reach it.
+/// (72 EI h / w)^(1/4), as a rod of small slopes does under its weight w from the height h, but at
+/// least over 2 h. Returns std::nullopt if the obstacle is not a half-space, if the weight does not
+/// press the rod onto it, if the clamp is within it or nearly normal to it, or if the rod does not
+/// reach it.
 std::optional<TangentField> field_on_obstacle(const Span& span, const Span::Obstacle& obstacle) {
   if (!obstacle.body.is_half_space()) return {};
   const Eigen::Vector3d normal = obstacle.body.normal();

@@ -10,8 +10,9 @@ namespace dlo::energy_model {
 /// Returns initial guesses for a span's equilibria, chosen by physical limits. With one clamp they
 /// are shapes that come down onto a half-space and lie along it, the pendulum's profile from the
 /// clamp's direction to the load's, by the shorter and the longer way, and the straight rod.
-/// Between grips they are arches and S-shapes of the right slack to both sides, and loops if there
-/// are two grips and slack. Of each pair of arches the one that the weight favours comes first.
+/// Otherwise they are arches and S-shapes of the right slack to both sides, in space also arches
+/// across the weight, and loops if there are two grips and slack. Of each pair of arches the one
+/// that the weight favours comes first.
 /// @param span  has to outlive the result
 [[nodiscard]] std::vector<TangentField> start_fields(const Span& span);
 
@@ -28,9 +29,10 @@ namespace dlo::energy_model {
 
 /// Returns initial guesses for a rod with material directors: the stress-free shape, and the
 /// shapes of start_fields(), in space each also with the rod's frame rotated evenly along the rod,
-/// to several angles. If the frame at the end is prescribed too, the shapes of start_fields() with
-/// frames that are rotated evenly until they meet it, by the two angles of the class of
-/// Span::Twist::turns that are nearest to zero; shapes without a writhe are omitted.
+/// to several angles. If Span::Twist::turns is given, only the shapes of start_fields(), with
+/// frames that are rotated evenly until they meet the frame at the end. Each is rotated by the two
+/// angles of the class of these turns that are nearest to zero; shapes without a writhe are
+/// omitted.
 /// @param span  has to outlive the result
 [[nodiscard]] std::vector<TangentField> natural_fields(const Span& span);
 

@@ -84,7 +84,7 @@ struct ContactSeries {
 /// With more moments rounding would dominate Newton's last step and the forces derived from it.
 inline constexpr double short_part = 5e-3;
 
-/// Returns the forces of one contact from the multipliers' series N(s) = sum mu phi(s);
+/// Returns the forces of one contact from the multipliers' series N(s) (ContactRows);
 /// ContactForce::force and ContactForce::moment remain zero.
 /// @param multipliers  of the rows of all contacts
 [[nodiscard]] ContactForce force_of_series(const ContactSeries& rows,

@@ -156,8 +156,8 @@ void ContactRows::reset(const Span& span, const std::vector<Element>& elements, 
       contacts_[i].held_at_end = is_held(span, contact.end);
     }
     if (!contact.lies()) continue;
-    // The slope is not prescribed unless a clamp holds the contact; it then has one more unknown
-    // than its curvature.
+    // Unless a clamp within the contact prescribes the slope, the slope has one more unknown than
+    // its derivative.
     const Eigen::Index degrees = held == HeldBy::clamp ? terms : terms + 1;
     add_slopes(span, i, elements, degrees, terms, table);
   }

@@ -14,13 +14,14 @@
 namespace dlo::energy_model {
 
 /// Constraints of the rod's contacts with rigid obstacles, as functions of clearances g of its
-/// points. A sliding contact at one point has one row: the smallest clearance near it, wherever
-/// that point is. Any other contact has a row for the clearance at its begin, unless a grip holds
-/// the rod within the contact. Where the rod lies on the obstacle, each element also has rows for
-/// the moments int phi g' ds of its slope, divided by the element's length, with the polynomials
-/// phi up to the degree to which its strains resolve the slope. The strains of such a part are
-/// thereby fixed in the direction away from the obstacle and free along it. The multipliers' series
-/// N(s) = sum mu phi(s) is the force that the contacts carry at s, and -N' the obstacle's pressure.
+/// points. A sliding contact at one point inside the span has a row for the smallest clearance near
+/// it, wherever that point is. Any other contact has a row for the clearance at its begin. A
+/// contact in which a grip holds the rod has neither row. Where the rod lies on the obstacle, each
+/// element also has rows for the moments int phi g' ds of its slope, divided by the element's
+/// length, with the polynomials phi up to the degree to which its strains resolve the slope. The
+/// strains of such a part are thereby fixed in the direction away from the obstacle and free along
+/// it. The series N(s) = sum mu phi(s) / length of the multipliers on an element is the force that
+/// the contacts carry at s, and -N' the obstacle's pressure.
 ///
 /// On a half-space g' = n.t, and the moments are linear in the tangents. For other bodies they are
 /// computed from clearances alone, int phi g' = [phi g] - int phi' g.
@@ -31,7 +32,7 @@ class ContactRows {
              const LegendreTable& table);
 
   [[nodiscard]] Eigen::Index count() const { return linear_.cols(); }
-  /// Resizes the matrices of an evaluation.
+  /// Resizes an evaluation and computes the derivatives of the linear rows; evaluate() needs both.
   void resize(ContactEvaluation& place) const;
   /// Evaluates the rows at a shape. @param tangents  nodes x 3
   void evaluate(const Eigen::MatrixX3d& tangents, ContactEvaluation& place) const;
@@ -95,7 +96,7 @@ class ContactRows {
   std::vector<Eigen::Vector3d> normals_;  // normals of half-spaces, by contact
   PositionOperator reach_;
   // For rows that are linear in the tangents; zero for others.
-  Eigen::MatrixXd linear_;   // weight times phi, nodes x rows
+  Eigen::MatrixXd linear_;   // weights of normal . t at the nodes, nodes x rows
   Eigen::Matrix3Xd normal_;  // normals, one per row
   Eigen::VectorXd offset_;
 };

@@ -23,7 +23,6 @@ Eigen::Vector3d first_tangent(const Span& span) {
   return before.norm() > 0 ? Eigen::Vector3d(-before.normalized()) : Eigen::Vector3d::UnitX();
 }
 
-/// Calls a function with each term.
 template <typename Terms, typename Function>
 void for_each(Terms& terms, const Function& function) {
   std::apply([&](auto&... term) { (function(term), ...); }, terms);

@@ -19,14 +19,14 @@
 
 namespace dlo::energy_model {
 
-/// Bending plus load energy of a span as a function of its unknowns, with constraints. The unknowns
-/// x in the plane are the tangent's angle at the start (if no clamp fixes it) and the curvature
-/// coefficients of every element; in space they are those of RodFrames. The energy of the strains
-/// is half the sum of the squares of the coefficients in both. If the end frames of a rod without
-/// material directors are prescribed, the last unknown is the angle psi of the rod's frame relative
-/// to Bishop's at the end, with whole turns, times (GJ / EI / length)^(1/2): its square is twice
-/// the twist energy. psi rotates the end's frame to that of its clamp. With material directors the
-/// frames are the rod's own.
+/// Energy of a span (strains, loads, soft obstacles) as a function of its unknowns, and its
+/// constraints. The unknowns x in the plane are the tangent's angle at the start (if no clamp fixes
+/// it) and the curvature coefficients of every element; in space they are those of RodFrames. The
+/// energy of the strains is half the sum of the squares of the coefficients in both. If the end
+/// frames of a rod without material directors are prescribed, the last unknown is the angle psi of
+/// the rod's frame relative to Bishop's at the end, with whole turns, times (GJ / EI /
+/// length)^(1/2): its square is twice the twist energy. psi rotates the end's frame to that of its
+/// clamp. With material directors the frames are the rod's own.
 ///
 /// L = E - sum mu . c: the multipliers mu are the forces (of positions) and torques (of directions)
 /// that the grips exert on the rod, and those of ContactRows. Without obstacles evaluate() and
@@ -73,8 +73,8 @@ class SpanEnergy {
   /// tangent's tilt. second_derivatives_out_of_plane() handles all planar spans.
   void tilt_hessian(SpanPoint& at, const Eigen::Ref<const Eigen::VectorXd>& multipliers,
                     Eigen::MatrixXd& hessian, Eigen::MatrixXd& jacobian) const;
-  /// Whether every bending out of the plane increases the energy; for a planar span that only one
-  /// clamp holds.
+  /// Whether every bending out of the plane increases the energy; for a plain cantilever
+  /// (Span::is_plain_cantilever()).
   [[nodiscard]] bool resists_out_of_plane(SpanPoint& at) const;
 
   /// Arc lengths of the nodes.
@@ -107,8 +107,8 @@ class SpanEnergy {
   [[nodiscard]] Eigen::VectorXd prolong_multipliers(const SpanEnergy& other,
                                                     const Eigen::VectorXd& multipliers) const;
 
-  /// Returns the truncation indicator: the largest rotation [rad] by one of the last two
-  /// coefficients of an element; small if the curvature is resolved.
+  /// Returns the truncation indicator: upper bound of the rotation [rad] by one of the last two
+  /// coefficients of any element; small if the curvature is resolved.
   [[nodiscard]] double truncation(const Eigen::VectorXd& x) const { return truncation(x, terms()); }
   /// Returns the truncation indicator of the first `terms` coefficients.
   [[nodiscard]] double truncation(const Eigen::VectorXd& x, int terms) const;
