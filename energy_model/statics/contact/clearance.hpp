@@ -48,8 +48,8 @@ struct Penetration {
 /// @param[in,out] equilibrium  status, message and penetration
 Penetration judge_penetration(const Problem& problem, Equilibrium& equilibrium);
 
-/// Largest depth within a rigid obstacle of a shape that counts as on it, and largest distance from
-/// the obstacle of a grip that counts as on it, divided by the span's length: rounding.
+/// Largest depth within a rigid obstacle of a shape that counts as on it, divided by the span's
+/// length, and largest distance from the obstacle of a grip that counts as on it [l]: rounding.
 inline constexpr double contact_tolerance = 1e-9;
 /// Largest depth, divided by the span's length, while coefficients may be missing.
 inline constexpr double coarse_contact_tolerance = 1e-6;

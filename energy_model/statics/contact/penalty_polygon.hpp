@@ -12,7 +12,7 @@
 namespace dlo::energy_model {
 
 /// Returns a polygon's tangent at s: between the middles of two segments the weighted sum of their
-/// tangents, normalised.
+/// tangents, normalised; beyond the outermost middles the tangent of that segment.
 /// @param middles  arc lengths, ascending;  @param tangents  of the segments, unit, 3 x middles
 [[nodiscard]] inline Eigen::Vector3d tangent_between(const Eigen::VectorXd& middles,
                                                      const Eigen::Matrix3Xd& tangents, double s) {

@@ -67,7 +67,7 @@ struct SpanShape {
   double anchor = 0;
   std::vector<Element> elements;
   double start_theta = 0;  ///< in the plane, with the rotation of a free start [rad]
-  Eigen::Matrix3d start_frame = Eigen::Matrix3d::Identity();
+  Eigen::Matrix3d start_frame = Eigen::Matrix3d::Identity();  ///< without a free start's rotation
   bool free_start = false;
   Eigen::VectorXd strains;
   NaturalStrains natural;

@@ -54,8 +54,8 @@ class ActiveSet {
   int spent_ = 0;
 };
 
-/// Returns known contacts with the present positions of their obstacles; std::nullopt if an
-/// obstacle has disappeared.
+/// Returns known contacts, made sliding, with the present positions of their obstacles;
+/// std::nullopt if an obstacle has disappeared.
 [[nodiscard]] std::optional<std::vector<Span::Contact>> moved_contacts(
     const Span& span, std::vector<Span::Contact> known);
 

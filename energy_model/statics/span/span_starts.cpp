@@ -227,7 +227,7 @@ std::array<double, 2> angles_of_class(double angle) {
   return {nearest, nearest - std::copysign(4 * pi, nearest)};
 }
 
-/// natural_fields() with a prescribed frame at the end.
+/// natural_fields() if Span::Twist::turns is given.
 std::vector<TangentField> fields_with_end_frame(const Span& span) {
   std::vector<TangentField> fields;
   const Eigen::VectorXd s = Eigen::VectorXd::LinSpaced(257, 0, span.length);

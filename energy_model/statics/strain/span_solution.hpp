@@ -17,12 +17,12 @@ struct [[nodiscard]] SpanSolution {
   std::string message = "never ran";
   int evaluations = 0;
   int terms = 0;
-  double residual = -1;  ///< norm of the residual of gradient and constraints
+  double residual = -1;  ///< norm of the residual of gradient and constraints; -1: unknown
   /// Norm of the Newton step from x that would come next: an estimate of the error of x.
   double next_step = std::numeric_limits<double>::infinity();
-  /// Magnitude of the eigenvalue of the last Newton factor nearest to zero, or an overestimate;
-  /// after certify() without rigid-body modes and overestimated by at most about 1 %. Rounding and
-  /// truncation errors are divided by it. NaN: not computed.
+  /// Magnitude of the eigenvalue of the last Newton factor nearest to zero, or an overestimate
+  /// (after certify() by about 1 % at most, and without rigid-body modes). Directions out of a
+  /// span's plane are ignored. Rounding and truncation errors are divided by it. NaN: not computed.
   double eigenvalue_nearest_zero = std::numeric_limits<double>::quiet_NaN();
   /// Estimated distance of the shape from an equilibrium, divided by the length; NaN: unknown.
   double error = std::numeric_limits<double>::quiet_NaN();
@@ -30,8 +30,8 @@ struct [[nodiscard]] SpanSolution {
   /// Whether more terms would not change the shape, or the caller chose their number.
   bool resolved = false;
   bool followed = false;  ///< whether it was found near the known shape by Newton's method alone
-  /// Smallest eigenvalue of the reduced Hessian, including directions out of the plane; NaN: not
-  /// computed.
+  /// Smallest eigenvalue of the reduced Hessian, including directions out of the plane unless
+  /// Span::stays_in_plane(); NaN: not computed.
   double smallest_eigenvalue = std::numeric_limits<double>::quiet_NaN();
   /// Number of eigenvalues that are zero to the tolerance, without rigid-body modes; at least 1 if
   /// the shape may be at a fold or passes very near to a soft obstacle's middle. An equilibrium
