@@ -12,9 +12,9 @@
 namespace dlo::energy_model {
 
 /// Divides a span into elements: at kink_positions(), at the ends of Span::contacts, at
-/// Span::contact_ends and at Span::cuts. Without cuts it is divided where the boundary layers at
-/// the start and a clamped end of a soft rod, at the ends and loads of its taut segments and beside
-/// contacts have decayed by exp(-6) and exp(-24), so that no element has to resolve a whole layer.
+/// Span::contact_ends and at Span::cuts. Without cuts it is also divided where boundary layers have
+/// decayed by exp(-6) and exp(-24), so that no element has to resolve a whole layer: those at the
+/// start and a clamped end of a soft rod, at ends and loads of taut segments and beside contacts.
 [[nodiscard]] std::vector<Element> elements_of(const Span& span);
 
 /// Smallest distance of two element boundaries; a shorter element could not have a curvature of its

@@ -9,9 +9,9 @@ namespace dlo::energy_model {
 /// Finds the contacts of an equilibrium by an active-set method. Each round runs Newton's method
 /// with given contacts, moves their ends to where the rod lifts off (free_boundary_newton()),
 /// releases contacts that pull, and adds contacts where the rod is within an obstacle
-/// (updated_contacts()). It ends when nothing is released or added, or as not_verified after 16
-/// rounds or if a round finds no equilibrium. It applies to all rods, including those that clamps
-/// twist.
+/// (updated_contacts()). It ends when nothing is released or added. It ends as not_verified after
+/// 16 rounds, if a round finds no equilibrium, or if the contacts then do not end where the rod
+/// lifts off. It applies to all rods, including those that clamps twist.
 class ActiveSet {
  public:
   /// All arguments have to outlive the object.

@@ -21,8 +21,8 @@ struct PlacedSolution {
 /// of the first and the last chord the shape is straight.
 /// @param arc_lengths  of the points [m], ascending, two or more;  @param points  [m], 3 x M
 /// @param length  of the rod [m]
-/// @throws std::invalid_argument if a value is out of range or not finite, if the numbers of points
-///   and arc lengths differ, or if all points coincide
+/// @throws std::invalid_argument if a value is out of range, not ascending or not finite, if there
+///   are fewer than two points or another number of arc lengths, or if all points coincide
 [[nodiscard]] Equilibrium shape_through(const std::vector<double>& arc_lengths,
                                         const Eigen::Ref<const Eigen::Matrix3Xd>& points,
                                         double length);

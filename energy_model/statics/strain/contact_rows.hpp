@@ -18,10 +18,10 @@ namespace dlo::energy_model {
 /// it, wherever that point is. Any other contact has a row for the clearance at its begin. A
 /// contact in which a grip holds the rod has neither row. Where the rod lies on the obstacle, each
 /// element also has rows for the moments int phi g' ds of its slope, divided by the element's
-/// length, with the polynomials phi up to the degree to which its strains resolve the slope. The
-/// strains of such a part are thereby fixed in the direction away from the obstacle and free along
-/// it. The series N(s) = sum mu phi(s) / length of the multipliers on an element is the force that
-/// the contacts carry at s, and -N' the obstacle's pressure.
+/// length. The degree of the polynomials phi is limited to that of a slope that the strains
+/// resolve. The strains of such a part are thereby fixed in the direction away from the obstacle
+/// and free along it. The series N(s) = sum mu phi(s) / length of the multipliers on an element is
+/// the force that the contacts carry at s, and -N' the obstacle's pressure.
 ///
 /// On a half-space g' = n.t, and the moments are linear in the tangents. For other bodies they are
 /// computed from clearances alone, int phi g' = [phi g] - int phi' g.
