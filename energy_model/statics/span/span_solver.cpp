@@ -208,7 +208,6 @@ class Search {
     return starts;
   }
 
-  /// Returns the starts, cheapest first.
   [[nodiscard]] std::vector<Start> ranked_starts() {
     std::vector<Start> ranked = starts();
     const int coarse = on_.coarse_terms();
