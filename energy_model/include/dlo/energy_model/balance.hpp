@@ -33,7 +33,7 @@ struct Imbalance {
   double largest_moment = 0;
 
   /// Returns force / largest_force or moment / largest_moment, whichever is larger [-]; NaN if
-  /// either is NaN, as it is if an action contains NaN or largest_moment is 0.
+  /// either is NaN, as it is if an action contains NaN, largest_force is 0 or largest_moment is 0.
   [[nodiscard]] double share() const;
   /// Returns a text with both sums and their shares of the largest force and moment.
   [[nodiscard]] std::string text() const;

@@ -38,8 +38,8 @@ struct ChainProblem {
 
 /// Initial guess and limits of a minimisation.
 struct ChainOptions {
-  /// Initial angles of the segments [rad], n values; empty: computed from the moments of the
-  /// straight chain.
+  /// Initial angles of the segments [rad], n values, of which first_angle replaces the first;
+  /// empty: computed from the moments of the straight chain.
   Eigen::VectorXd start_angles;
   /// Norm of the gradient at which the minimisation ends, divided by the sum of the sizes of all
   /// forces times the length, plus the largest moment of a joint's stress-free angle; > 0. Rounding

@@ -92,8 +92,8 @@ struct [[nodiscard]] Dynamics {
   std::string message = "never ran";  ///< the status in words
   std::vector<MovingFrame> frames;    ///< states at the requested times that were reached
   int terms = 0;                      ///< coefficients of each element and strain component
-  /// Number of attempted steps of all spans, in all runs. With an adapted step size a step and its
-  /// two halves count as three.
+  /// Number of attempted steps of all spans, in all runs except one in the plane that is repeated
+  /// in space. With an adapted step size a step and its two halves count as three.
   long steps = 0;
   /// Size of the smallest step [s].
   double smallest_step = std::numeric_limits<double>::infinity();
@@ -103,7 +103,7 @@ struct [[nodiscard]] Dynamics {
   /// Largest depth of the rod's axis in a rigid obstacle at the end of a step [m].
   double deepest_contact = 0;
   /// Largest |total - total at the first time + dissipated + lost - work| of all frames, divided by
-  /// `largest_energy`.
+  /// `largest_energy`; 0 if that is 0.
   double energy_error = std::numeric_limits<double>::infinity();
   /// Largest of the following at the first time and in all frames: kinetic, bending, twisting,
   /// obstacle, dissipated or lost energy, work, and change of gravity and load energy [J].
@@ -153,7 +153,8 @@ struct DynamicsOptions {
 /// @param times  times of the frames [s], growing. The motion begins at 0, or at the first of them
 ///               if that is negative
 /// @throws std::invalid_argument if an argument is out of range; for couples, loads that follow the
-/// rod, Problem::drag, axial_stiffness and confined_to_plane; and as solve_energy() for grips
+/// rod, Problem::drag, axial_stiffness and confined_to_plane; and for grips as far apart as the rod
+/// between them is long or farther, a taut_line() included
 Dynamics simulate(const MovingRod& rod, const StartingShape& start, std::span<const double> times,
                   const DynamicsOptions& options = {});
 

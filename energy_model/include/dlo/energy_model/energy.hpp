@@ -83,7 +83,8 @@ struct EnergySearch {
   /// bifurcation `near_singular`. Never empty: if none is found, the result with the reason.
   std::vector<Equilibrium> equilibria;
   /// Kinds of initial guess in the order of their first use. Each span counts separately; the
-  /// equilibria of the spans are combined to those of the rod.
+  /// equilibria of the spans are combined to those of the rod. Empty if shape_without_search()
+  /// solves the problem.
   std::vector<SearchStrategy> strategies;
   /// Initial guesses that were interrupted or omitted, and why; in words.
   std::vector<std::string> omitted;
@@ -116,12 +117,13 @@ class EnergySolver {
 
   /// Solves as solve_energy() does.
   Equilibrium solve(const Problem& problem);
-  /// Solves from the shape of the previous call instead of a search, if that call had a shape: for
-  /// a gripper or an obstacle that has moved a little. It uses Newton's method with contacts, which
-  /// are updated as they change. The branch has ended if Newton's method finds no equilibrium near
-  /// the last shape, or an unstable one. The returned shape is then the next minimum downhill of
-  /// the last shape, or failing that the result of solve(). The problem must have the same
-  /// obstacles in the same order.
+  /// Solves from the shape of the previous call instead of a search, for a gripper or an obstacle
+  /// that has moved a little. It searches if that shape was neither stable nor at a singular point,
+  /// or is that of shape_without_search(). It uses Newton's method with contacts, which are updated
+  /// as they change. The branch has ended if Newton's method finds no equilibrium near the last
+  /// shape, or an unstable one. The returned shape is then the next minimum downhill of the last
+  /// shape, or failing that the result of solve(). The problem must have the same obstacles in the
+  /// same order.
   Equilibrium follow(const Problem& problem);
   /// Follows the branch by Newton's method as follow() does, but does not continue beyond the end
   /// of the branch. Returns std::nullopt if no stable equilibrium is found near the last shape, if

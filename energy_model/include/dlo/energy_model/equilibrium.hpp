@@ -60,7 +60,7 @@ struct [[nodiscard]] Equilibrium {
   /// without derivatives. Its polygons do not count.
   int evaluations = 0;
   int terms = 0;  ///< `energy`: coefficients of each element and strain component; 0 for `exact`
-  double seconds = 0;  ///< wall time of the call [s]
+  double seconds = 0;  ///< wall time of the call [s]; 0 for a shape of shape_without_search()
   /// Residual of the equations [-], the largest of all spans. It is 0 for taut_line();
   /// catenary_limit() describes its own.
   /// `energy`: norm of (g - J^T mu, f c), with the gradient g by the coefficients in EI/l, the
@@ -92,10 +92,10 @@ struct [[nodiscard]] Equilibrium {
   /// shape. Always 0 for `exact`.
   int neutral_directions = 0;
   /// `energy`: energies of the stable equilibria that the search found, lowest first, at most 64;
-  /// each mirror image has an entry of its own [J]. Empty if the call started from a known shape or
-  /// needed no search.
+  /// each mirror image has an entry of its own [J]. Empty if the call was given a known shape
+  /// (EnergyOptions::start, follow(), near()) or needed no search.
   std::vector<double> stable_energies;
-  /// `energy`: number of initial guesses of the search that pass obstacles on another side.
+  /// `energy`: number of initial guesses that pass obstacles on another side; 0 from a known shape.
   int other_side_starts = 0;
   /// Largest depth of the axis behind a rigid obstacle, between the solver's nodes too [m]; 0
   /// without such obstacles. A shape is not_verified if the depth exceeds `allowed_penetration`

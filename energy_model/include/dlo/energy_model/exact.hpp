@@ -20,8 +20,8 @@ struct ExactOptions {
   /// confirms or corrects without a search. It has to outlive the call. If clamps twist the rod,
   /// the solver starts with the torque of the shape's `twists` and counts whole turns as they do; a
   /// shape without `twists` is treated as the rod without twist. For a rod with material directors,
-  /// which must have a clamp, the frames are given by the shape's d1. If it has no d1, they are
-  /// computed from the frame of the first clamp and from the reactions.
+  /// which must have a clamp, the frames are given by the shape's d1. If it has no d1, which is not
+  /// allowed with obstacles, they are computed from the first clamp's frame and the reactions.
   const Equilibrium* start = nullptr;
 };
 
@@ -41,12 +41,14 @@ struct ExactOptions {
 /// none. Its stability is that of the second variation by finite elements on its own shape
 /// @throws std::invalid_argument if the problem or an option is out of range. Also for weight and
 /// loads above 1e6 EI/l^2, for grips as far apart as the rod between them is long unless it
-/// stretches or is a taut_line(), for obstacles without a start or with one whose contacts are not
-/// supported, for yielding obstacles, for obstacles together with natural strains, couples,
-/// axial_stiffness or a line load that varies along the rod, for axial_stiffness with loads that
-/// have no potential, for confined_to_plane, for a clamp without a frame between two that hold
-/// frames of a round straight rod, and, if a load has no potential, for obstacles, a load that
-/// follows the rod at a clamp, and more than two clamps with frames of a round straight rod
+/// stretches or is a taut_line(), for obstacles without a start (unless catenary_limit() applies)
+/// or with one whose contacts are not supported, for yielding obstacles, for obstacles together
+/// with natural strains, couples, axial_stiffness or a line load that varies along the rod, for
+/// axial_stiffness with loads that have no potential, for confined_to_plane, for a clamp without a
+/// frame between two that hold frames of a round straight rod, and, if a load has no potential, for
+/// obstacles, a load that follows the rod at a clamp, and more than two clamps with frames of a
+/// round straight rod. A load that follows along d1 or d2 needs a clamp with a determined d1 and,
+/// out of a plane, GJ > 0
 Equilibrium solve_exact(const Problem& problem, const ExactOptions& options = {});
 
 /// Returns every equilibrium that the scan or the search finds: `converged` ones first, by energy,

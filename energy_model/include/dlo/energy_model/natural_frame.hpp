@@ -9,12 +9,13 @@
 namespace dlo::energy_model {
 
 /// Returns the direction of d2 at the first clamp of a rod with material directors if that clamp
-/// has no d1, before its roll. It is the normal of the plane of grips, weight and obstacles, on the
-/// side of +z (+y, +x). Without natural strains loads determine the plane too, and a straight line
-/// lies in the plane that contains x, or y. With natural strains loads do not determine the plane.
-/// Returns std::nullopt if there is no such plane, or if an obstacle is not symmetric to it. With
-/// natural strains it also does so if grips, weight and obstacles determine only a line, in a plane
-/// that contains z, or if a load or drag moves the rod out of the plane noticeably.
+/// has no d1, before its roll. It is the normal of the plane that contains grips, weight and the
+/// normals of half-spaces, on the side of +z (+y, +x). Without natural strains loads and the
+/// velocity of drag determine the plane too, and a straight line lies in the plane that contains x,
+/// or y. With natural strains loads do not determine the plane. Returns std::nullopt if there is no
+/// such plane, or if an obstacle is not symmetric to it. With natural strains it also does so if
+/// these directions determine only a line, in a plane that contains z, or if a load or drag moves
+/// the rod out of the plane noticeably.
 [[nodiscard]] std::optional<Eigen::Vector3d> natural_normal(const Problem& problem);
 
 /// Returns the index in Problem::grips of the first clamp along the rod; std::nullopt if there are

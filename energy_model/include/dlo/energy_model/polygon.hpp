@@ -119,8 +119,8 @@ PolygonResult solve_polygon(const PolygonProblem& problem,
 
 /// Follows the shape while the end frames are rotated in small steps from their twist-free rotation
 /// to the prescribed one. Each step starts from the shape of the previous step, extrapolated
-/// linearly unless that step has jumped, and descends to a minimum if that shape has lost its
-/// stability.
+/// linearly unless that step has jumped or this one is repeated, and descends to a minimum if that
+/// shape has lost its stability.
 /// @param problem  problem with the twists of the result; `angle` is theta of `start`
 /// @param start    equilibrium without twist [m], 3 x (n+1)
 /// @throws std::invalid_argument as solve_polygon

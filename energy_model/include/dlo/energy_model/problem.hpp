@@ -128,7 +128,7 @@ struct Problem {
   bool confined_to_plane = false;
   /// EA [N], > 0, of the whole rod: r' = (1 + N/EA) t, N the tension. Arc lengths, weight, loads
   /// per length and strains refer to the unstretched rod. None: inextensible. Only `exact` accepts
-  /// it, for a rod without contact.
+  /// it, without obstacles and if all loads have a potential.
   std::optional<double> axial_stiffness = std::nullopt;
 };
 
@@ -140,9 +140,9 @@ struct Problem {
 /// Whether a load has a couple.
 [[nodiscard]] bool has_couples(const Problem& problem);
 
-/// Whether all loads have a potential, so that an energy determines stability: no drag, no load
-/// that follows the rod, and couples only across the plane of a rod that stays in a plane and is
-/// not twisted.
+/// Whether all loads have a potential, so that an energy determines stability: no drag and no load
+/// that follows the rod. If there are couples, on clamps too, they have to be across the plane of
+/// the rod, fewer than two clamps hold frames, and material directors bend about d2 alone.
 [[nodiscard]] bool has_potential(const Problem& problem);
 
 /// Throws if a load is of a kind that has no potential (drag, a load that follows the rod), for
@@ -154,9 +154,9 @@ void require_dead_loads(const Problem& problem, const char* function);
 /// @throws std::invalid_argument naming a member out of range, its value and its range
 void check(const Problem& problem);
 
-/// Energies [J]. Gravity and loads are zero if their points are at the first grip. Couples are zero
-/// if the tangent has the direction of the clamp before the load (else of the one after it; without
-/// a clamp up to a constant). Out of a plane couples have no energy.
+/// Energies [J]. Gravity and loads are zero if their points are at the first of Problem::grips.
+/// Couples are zero if the tangent has the direction of the clamp before the load (else of the one
+/// after it; without a clamp up to a constant). Out of a plane couples have no energy.
 struct Energies {
   double bending = 0;   ///< int 1/2 (EI_1 u1^2 + EI_2 u2^2) ds, with u beyond the natural strains
   double twisting = 0;  ///< int 1/2 GJ tau^2 ds, tau the twist per length beyond the natural one

@@ -73,9 +73,10 @@ struct [[nodiscard]] Vibrations {
 
 /// Number, accuracy and time limit of the modes.
 struct VibrationOptions {
-  int count = 6;                                                ///< number of modes, > 0
-  double tolerance = 1e-9;                                      ///< relative error of omega
-  double time_limit = std::numeric_limits<double>::infinity();  ///< time limit [s], > 0
+  int count = 6;            ///< number of modes, > 0
+  double tolerance = 1e-9;  ///< relative error of omega
+  /// Time limit [s], > 0. A call that reaches it while it solves for the shape is `failed`.
+  double time_limit = std::numeric_limits<double>::infinity();
 };
 
 /// Computes small free vibrations without damping about an equilibrium of the energy model: H v =
@@ -86,8 +87,9 @@ struct VibrationOptions {
 /// Terms are added until omega does not change.
 /// @param known  equilibrium of the same problem; modes of an unstable one have negative squares
 /// @throws std::invalid_argument if the problem, the inertia or an option is out of range, for
-/// couples and confined_to_plane, and as solve_energy() for grips and loads. A shape that touches a
-/// rigid obstacle is `failed`: a vibrating rod lifts off, which is not linear
+/// couples and confined_to_plane, and as solve_energy() for grips (a taut_line() included) and
+/// loads. A shape that touches a rigid obstacle is `failed`: a vibrating rod lifts off, which is
+/// not linear
 Vibrations vibrations(const Problem& problem, const Inertia& inertia, const Equilibrium& known,
                       const VibrationOptions& options = {});
 
