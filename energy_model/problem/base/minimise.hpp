@@ -15,7 +15,7 @@ using Objective =
 
 struct MinimiseOptions {
   double gradient_tolerance = 0;  ///< Euclidean norm of the gradient at which the minimisation ends
-  int max_evaluations = 0;
+  int max_evaluations = 0;        ///< <= 0: unlimited
   /// Steps that L-BFGS stores; 0: as many as unknowns, which needs fewer but slower steps. The
   /// memory limits them to 2^24 / unknowns, but not to fewer than eight.
   int stored_steps = 0;

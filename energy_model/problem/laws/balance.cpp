@@ -135,9 +135,8 @@ class DistributedActions {
   /// Whether contact with a yielding body may stay undetected in a panel.
   /// @param points  points of the rod at the begin, the nodes and the end of the panel
   [[nodiscard]] bool may_hide_contact(const Eigen::Matrix3Xd& points, double width) const {
-    constexpr double half_gap = 0.1;  // between two nodes, in panel widths
-    constexpr double shortest_contact_share =
-        1.0 / 2048;  // contact is longer than this share of the rod
+    constexpr double half_gap = 0.1;                       // between two nodes, in panel widths
+    constexpr double shortest_contact_share = 1.0 / 2048;  // shortest contact / rod length
     const Eigen::Index last = points.cols() - 1;
     return std::ranges::any_of(yielding_, [&](std::size_t i) {
       const obstacle::Body& body = problem_.obstacles[i].body;

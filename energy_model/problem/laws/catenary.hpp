@@ -48,7 +48,8 @@ struct Catenary {
                                                        const Eigen::Vector3d& up);
 
 /// Computes the catenary of length l between two points on a floor that carries its lowest part;
-/// std::nullopt if the floor carries none of it, or if the points are above each other.
+/// std::nullopt if the floor carries none of it, if the line is so long that its tension vanishes
+/// (a < 1e-6 l), or if the points are above each other. Points below the floor are moved up to it.
 /// @param floor  height of the floor along `up` [m]
 [[nodiscard]] std::optional<Catenary> catenary_on_floor(const Eigen::Vector3d& begin,
                                                         const Eigen::Vector3d& end, double l,

@@ -28,7 +28,7 @@ using Vector = Eigen::Vector3d;
 constexpr double largest_clamp_angle = 170 * std::numbers::pi / 180;
 /// Distance in layer lengths after which a layer has decayed: exp(-40) = 4e-18.
 constexpr double layer_decay_lengths = 40;
-/// Largest error_estimate divided by the length with which a soft line is returned. The models' own
+/// Largest Equilibrium::error_estimate [-] with which a soft line is returned. The models' own
 /// estimates are lower where they succeed.
 constexpr double largest_accepted_error = 1e-7;
 
@@ -57,8 +57,7 @@ struct Composite {
   Catenary line;
   std::vector<Layer> layers;
   double length = 0;
-  double free_boundary_layer =
-      0;  // length of the layer in which the rod bends where it lifts off [m]
+  double free_boundary_layer = 0;  // CatenaryLimit::free_boundary_layer()
 
   struct Place {
     Vector point, tangent, curvature;
@@ -127,8 +126,7 @@ class CatenaryLimit {
                          .at_end = grip.at > problem_.length / 2,
                          .clamped = grip.direction.has_value()});
     }
-    constexpr int most_rounds =
-        12;  // each reduces the gap by about the ratio of layer and rod length
+    constexpr int most_rounds = 12;  // each reduces the gap by about layer length / rod length
     for (int i = 0; i < most_rounds; ++i) {
       if (!find_catenary()) return std::nullopt;
       for (Layer& layer : layers_) set_layer(layer);
@@ -326,7 +324,7 @@ class CatenaryLimit {
     part.end = rises_at_end ? end - free_boundary_layer() : problem_.length;
     part.force = result.obstacles.front();
     part.moment = (line_.point(line_.low + line_.lying_length / 2) - line_.point(part.begin))
-                      // Moment of the weight about the begin, at the middle of the part that lies.
+                      // The force acts in the middle of the line's part that lies.
                       .cross(part.force);
     part.begin_force = rises_at_begin ? pressed : 0.0;
     part.end_force = rises_at_end ? pressed : 0.0;

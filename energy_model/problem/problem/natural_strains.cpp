@@ -16,7 +16,6 @@ std::vector<double> legendre_polynomials(double x, std::size_t count) {
   return p;
 }
 
-/// Returns the integral of the series from a to b.
 Eigen::Vector3d series_integral(const NaturalStrains& natural, double a, double b) {
   // int P_j = (P_{j+1} - P_{j-1}) / (2 j + 1), int P_0 = P_1
   const std::size_t count = natural.coefficients.size();

@@ -75,7 +75,7 @@ void check_material_directors(const Problem& problem) {
                    problem.torsional_stiffness);
 }
 
-/// Whether a rod with material directors bends only about its d2, in a plane with this normal.
+/// Whether a rod bends only about d2, in a plane with this normal; true without material directors.
 bool bends_in_plane(const Problem& problem, const Eigen::Vector3d& normal) {
   if (!has_material_directors(problem)) return true;
   const auto about_d2 = [](const Eigen::Vector3d& u) { return u.x() == 0 && u.z() == 0; };

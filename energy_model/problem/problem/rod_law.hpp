@@ -53,7 +53,8 @@ struct RodPart : Section {
 /// Whether there is neither drag nor a load that follows the rod.
 [[nodiscard]] bool has_dead_loads(const Problem& problem);
 
-/// Returns the number of clamps that hold the rod's frame; two of them twist it.
+/// Returns the number of grips with Grip::frame; two of them twist the rod. The first clamp of a
+/// rod with material directors holds them without Grip::frame too, but does not count then.
 [[nodiscard]] int clamps_with_frames(const Problem& problem);
 
 /// Throws if the rod stretches, which only solve_exact() supports.
@@ -78,7 +79,6 @@ struct OrderedGrip {
   const Grip* grip;   ///< grip of the problem, which has to outlive this
 };
 
-/// Returns the grips by growing arc length.
 [[nodiscard]] std::vector<OrderedGrip> grips_by_arc_length(const Problem& problem);
 
 /// Returns the grips by growing arc length.
@@ -91,8 +91,8 @@ struct OrderedGrip {
 /// by exactly one span, so that each counts once.
 [[nodiscard]] std::optional<std::size_t> clamp_at_load(const Problem& problem, const Load& load);
 
-/// Adds the loads on clamps to the clamps' reactions, and their potential relative to the first
-/// grip to the energy, because no span carries them.
+/// Subtracts the loads on clamps from the clamps' reactions, and adds the potential of their forces
+/// relative to the first of Problem::grips to the energy, because no span carries them.
 void add_loads_on_clamps(const Problem& problem, Equilibrium& result);
 
 /// Returns the arc lengths at which a shape may have kinks: ends, grips, loads, ends of sections,

@@ -74,7 +74,7 @@ double update_pull_and_tension(const Span& span, Segment& segment) {
 
 /// Returns the tangent at a pin between two segments, at which both bend the rod equally: the
 /// angles to the tangent are inversely proportional to the stiffness, which is the square root of
-/// the tension.
+/// the tension, or 2 / length if that is larger.
 Eigen::Vector3d tangent_between(const Segment& before, const Segment& after) {
   const auto stiffness = [](const Segment& segment) {
     return std::max(std::sqrt(segment.tension), 2 / segment.length());

@@ -54,7 +54,6 @@ struct Span {
     [[nodiscard]] bool lies() const { return end > begin; }
   };
 
-  /// An interval with another cross-section.
   struct Part {
     double begin = 0, end = 0;
     Eigen::Vector3d stiffness = {1, 1, 0};  ///< same order and unit as Span::stiffness
@@ -127,7 +126,7 @@ struct Span {
   /// Returns the sum of the norms of weight and loads, as a scale. A couple counts divided by the
   /// length.
   [[nodiscard]] double total_load() const;
-  /// Returns the force of weight and loads on the rod from its start to s.
+  /// Returns the force of weight and loads on the rod from its start to s, without loads at s.
   [[nodiscard]] Eigen::Vector3d force_before(double s) const;
   /// Returns the strongest kind of grip within these arc lengths, extended by `margin` on both
   /// sides.
@@ -137,11 +136,11 @@ struct Span {
   /// Whether shapes out of the plane are excluded, because the rod is confined or couples have no
   /// potential there.
   [[nodiscard]] bool stays_in_plane() const { return planar && (confined || has_couples()); }
-  /// Whether weight and loads all point in the same direction; false with couples.
+  /// Whether weight and loads point in the same direction, or are zero; false with couples.
   [[nodiscard]] bool has_unidirectional_load() const;
-  /// Whether this is a uniform straight rod in a plane with one clamp, loaded by nothing but weight
-  /// and point forces. Such spans are solved and certified by separate methods, so a new kind of
-  /// load or constraint has to be excluded here.
+  /// Whether this is a uniform straight rod in a plane with one clamp under weight and point forces
+  /// alone, without contact. Such spans are solved and certified by separate methods, so a new kind
+  /// of load or constraint has to be excluded here.
   [[nodiscard]] bool is_plain_cantilever() const {
     return planar && start_direction && holds.empty() && soft_obstacles.empty() &&
            contacts.empty() && parts.empty() && line_loads.empty() && !has_couples() &&

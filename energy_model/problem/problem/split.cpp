@@ -24,8 +24,9 @@ struct SpanInterval {
   [[nodiscard]] bool is_between_clamps() const { return clamped_begin && clamped_end; }
 };
 
-/// Directions of grips, chords and forces that determine a span's frame, in space.
+/// Directions that determine a span's frame, in space.
 struct Directions {
+  /// Unit directions of clamps and chords, normals of half-spaces, and two across each couple.
   std::vector<Eigen::Vector3d> grips;
   std::vector<Eigen::Vector3d> forces;
 };

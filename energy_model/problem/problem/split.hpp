@@ -40,8 +40,9 @@ struct PlacedSpan {
 /// Cuts a problem at its clamps, and converts every span to its units and its frame.
 /// @throws std::invalid_argument if the problem is out of range, a load has no potential, the rod
 /// stretches (axial_stiffness), two grips are at one arc length, grips are as far apart as the rod
-/// between them is long or farther, or confined_to_plane is set for a rod without a plane, with
-/// obstacles or with two clamps that hold frames
+/// between them is long or farther, a couple that is not on a clamp acts on a rod with obstacles,
+/// or confined_to_plane is set for a rod without a plane, with obstacles or with two clamps that
+/// hold frames; also as first_frame() and held_d1()
 [[nodiscard]] std::vector<PlacedSpan> split(const Problem& problem);
 
 /// Places stiffnesses and natural strains of a rod with material directors in a span, about the
