@@ -35,8 +35,8 @@ struct Found {
   std::vector<std::string> not_searched;  // descriptions of the omitted parts
 };
 
-/// Finds equilibria of a span: near the start, by the scan of the tip if it is the whole rod, or by
-/// the search.
+/// Finds equilibria of a span: near the start, by the scan of the tip if tip_can_be_scanned() for
+/// the whole rod, or by the search.
 SpanSearchResult search_one(const Problem& problem, const RodSpan& span,
                             const ExactOptions& options, const Deadline& deadline) {
   if (options.start != nullptr) {

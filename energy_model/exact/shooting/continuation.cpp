@@ -135,7 +135,7 @@ class Continuation {
   }
 
   /// Takes one step by Newton's method.
-  /// @return factor for the next step size; 0 if this step has to be shorter
+  /// @return factor for the next step size; 0 if the step failed
   double advance(double next) {
     const RodSpan span = family_.span(next);
     const std::vector<RodState> start = predicted(next);

@@ -36,7 +36,6 @@ namespace dlo::energy_model {
 [[nodiscard]] SpanEquilibrium stretch_span(const RodSpan& span, const SpanEquilibrium& rigid,
                                            double tolerance, const Deadline& deadline);
 
-/// Returns the span with a share of its stretch.
 [[nodiscard]] RodSpan with_stretch_share(RodSpan span, double share);
 
 /// Follows the gradient flow t_ = -grad E of a clamped span to a stable equilibrium, by backward

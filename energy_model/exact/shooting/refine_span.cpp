@@ -55,7 +55,7 @@ std::vector<RodState> states_by_curvature(const RodSpan& span, const Problem& pr
   return states;
 }
 
-/// Returns states of a whole rod: the moment is the sum of the actions of its grips.
+/// Returns states of a whole rod: the moment is that of the grips, the loads and the weight beyond.
 std::vector<RodState> states_by_balance(const RodSpan& span, const Problem& problem,
                                         const Equilibrium& shape, const RodMesh& mesh) {
   // Parts per interval for the integration of moments.

@@ -20,7 +20,6 @@ namespace dlo::energy_model {
 [[nodiscard]] Eigen::Vector3d curvature_of(const RodSection& section, const NaturalStrain& natural,
                                            double s, const RodState& state);
 
-/// Returns the tangents of states, 3 x states.
 [[nodiscard]] Eigen::Matrix3Xd tangents_of(const std::vector<RodState>& states);
 [[nodiscard]] std::vector<Eigen::Matrix3d> frames_of(const std::vector<RodState>& states);
 

@@ -27,7 +27,6 @@ Eigen::Matrix3d rotation_rate(const Eigen::Vector3d& rotation) {
   return Eigen::Matrix3d::Identity() - cross / 2 + share * cross * cross;
 }
 
-/// Returns two axes across a direction.
 Eigen::Matrix<double, 3, 2> axes_across(const Eigen::Vector3d& direction) {
   Eigen::Matrix<double, 3, 2> axes;
   const Eigen::Vector3d first = direction.unitOrthogonal();
@@ -126,7 +125,7 @@ Eigen::Matrix3Xd ShootingSystem::frame_equations(const RodState& node, Eigen::In
 /// Force that a contact subtracts from n, and its derivatives.
 struct ShootingSystem::ContactForceTerm {
   Eigen::Vector3d force = Eigen::Vector3d::Zero();
-  std::vector<Block> by;  // derivatives of the force in its unit
+  std::vector<Block> by;  // derivatives of minus the force, in its unit
 
   /// Returns the blocks of the balance of forces together with those of this force.
   [[nodiscard]] std::vector<Block> with(std::vector<Block> blocks) const {

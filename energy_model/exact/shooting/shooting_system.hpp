@@ -120,8 +120,8 @@ class ShootingSystem {
   /// frame, those across its direction at another clamp, none without a clamp
   Eigen::Matrix3Xd frame_equations(const RodState& node, Eigen::Index i, Rows& rows) const;
 
-  /// Adds the conditions at the start: position and direction of a clamp, or moment and force equal
-  /// to the load.
+  /// Adds the conditions at the start: position and direction of a clamp, or balance of moment and
+  /// force with the load there.
   void start_equations(const ShootingPoint& point, Rows& rows) const;
 
   [[nodiscard]] RodVariation variation_by(Eigen::Index placed) const;

@@ -86,7 +86,6 @@ double energy_of_couples(const Problem& problem, const RodSpan& span,
   return energy;
 }
 
-/// Returns the reason why the loads have no potential, for a message.
 std::string why_no_potential(const Problem& problem) {
   if (problem.drag) return "drag has no potential";
   return has_dead_loads(problem) ? "a couple in space has no potential"

@@ -46,12 +46,11 @@ inline constexpr double plane_tolerance = 1e-6;
 /// for the second variation, whose elements are accurate to 1e-8, and to compare shapes.
 inline constexpr double coarse_tolerance = 1e-10;
 
-/// Returns the length of the longest interval.
 [[nodiscard]] double longest_of(const RodMesh& mesh);
 
 /// Solves for the nodes by Newton's method from an initial guess (shooting_system.hpp), without
-/// energies and stability. If frames are held at both ends of a round rod, they are rotated by many
-/// turns, and its shape has nearly zero modes; close_gaps.cpp describes the steps then.
+/// energies and stability. If clamps twist a round rod, its shape may have nearly zero modes;
+/// close_gaps.cpp describes the steps then.
 /// @param start  cross-sections, one for each node of the mesh
 [[nodiscard]] SpanEquilibrium close_span(const RodSpan& span, const RodMesh& mesh,
                                          const std::vector<RodState>& start,
@@ -68,7 +67,7 @@ inline constexpr double coarse_tolerance = 1e-10;
 [[nodiscard]] RodMesh closed_mesh(const RodSpan& span, const SpanEquilibrium& equilibrium);
 
 /// Computes the energies of an equilibrium of close_span(), and its stability if the span's loads
-/// have a potential.
+/// have a potential; otherwise it counts as stable().
 void complete(const RodSpan& span, double tolerance, SpanEquilibrium& equilibrium);
 
 /// Computes the second variation of an equilibrium; if that fails, the equilibrium no longer counts

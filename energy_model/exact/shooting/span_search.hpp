@@ -26,6 +26,10 @@ struct SpanSearchResult {
 /// relaxed from there. If nothing is stable then, the gradient flow starts from the lowest
 /// equilibrium. If nothing is found, a failed result is returned.
 ///
+/// For a span that stretches, the results without stretch are continued (stretch_span()), and
+/// Newton's method also starts from straight lines between the grips. It starts from these alone if
+/// neighbouring grips are at least as far apart as the rod between them is long.
+///
 /// Frames after the first clamp are released for this search. If clamps hold frames, those of the
 /// lowest equilibrium are then rotated to the held ones (twist_span()); the result is then one
 /// equilibrium, or a failed one.
@@ -66,7 +70,7 @@ struct SpanSearchResult {
                                           const Deadline& deadline);
 
 /// Returns the force of the part beyond the arc length s (over l) on the part before, just after s,
-/// that the grips' forces of a shape imply, in EI/l^2.
+/// that a shape's grip forces, weight and loads imply, in EI/l^2; without contacts and drag.
 [[nodiscard]] Eigen::Vector3d implied_force(const Problem& problem, const Equilibrium& shape,
                                             double s);
 

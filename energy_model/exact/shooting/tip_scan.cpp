@@ -62,11 +62,11 @@ class TipShooter {
   }
 
   int integrations = 0;
-  int failures = 0;  // shots and root searches that did not converge
+  int failures = 0;  // shots that failed, and roots from which no equilibrium resulted
   bool out_of_time = false;
 
-  /// Whether all forces are parallel, so that the tip angle against them may be exponentially
-  /// small.
+  /// Whether all forces are parallel and no couple acts, so that the tip angle against them may be
+  /// exponentially small.
   [[nodiscard]] bool parallel() const { return parallel_; }
 
   /// Returns the sum of weight and loads over EI/l^2, l the length of the span.
@@ -288,8 +288,7 @@ class TipScan {
     return b;
   }
 
-  /// Adds a root, unless its shot failed, which TipShooter counts, or the winding number jumps
-  /// there.
+  /// Adds a root, unless its shot failed, which TipShooter counts, or the search did not converge.
   void add(const ScanPoint& root) {
     if (std::abs(root.residual) < 5e-9) roots_.push_back(root);
   }

@@ -99,14 +99,12 @@ class ClosedRod {
     return section_at(start_.span, (closed_.s[i] + closed_.s[i + 1]) / 2);
   }
 
-  /// Part of the rod between two cross-sections.
   struct Part {
     double s = 0;
     double width = 0;
     RodState begin, end;
   };
 
-  /// Whether an interval lies on a body.
   [[nodiscard]] bool lies_on(Eigen::Index i, std::size_t body) const {
     return std::any_of(start_.contacts.begin(), start_.contacts.end(), [&](const auto& contact) {
       return contact.part.kind == ContactKind::lying && contact.part.obstacle == body &&

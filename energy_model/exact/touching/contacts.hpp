@@ -45,8 +45,8 @@ struct ContactStart {
 /// Returns the equilibrium near a shape that states which parts of the rod touch which obstacles,
 /// for an intrinsically straight rod with any grips on rigid bodies of any shape. The result is
 /// verified here: gaps, forces and pressures of the right sign, and a positive second variation.
-/// @param shape      shape of this problem or of a similar one, with the reactions of its grips and
-///               its contacts
+/// @param shape      shape of this problem or of a similar one, with the reactions of its grips,
+///                   its contacts, and d1 if the rod has two bending stiffnesses
 /// @param tolerance  local error of the integrator
 /// @return std::nullopt for another kind of problem, for a shape without samples or without a
 /// reaction for each grip, and for contacts that are not supported: a point contact at a grip, a
