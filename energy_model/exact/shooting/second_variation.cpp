@@ -232,7 +232,6 @@ class VariationProblem {
     distribute(e, sums);
   }
 
-  /// Adds an element's sums to those of its nodes.
   void distribute(Eigen::Index e, const ElementSums& sums) {
     const auto& [second, norm, integral] = sums;
     const Eigen::Index multiplier = multiplier_of(e);

@@ -97,8 +97,8 @@ struct [[nodiscard]] Dynamics {
   long steps = 0;
   /// Size of the smallest step [s].
   double smallest_step = std::numeric_limits<double>::infinity();
-  /// Sum over all steps of the change by halving the step: root mean square of the points'
-  /// displacement divided by the length. NaN with a fixed step, which is not halved.
+  /// Sum over all steps of the change by halving the step: root mean square of the displacement,
+  /// weighted by mass, divided by the length. NaN with a fixed step, which is not halved.
   double error_estimate = std::numeric_limits<double>::quiet_NaN();
   /// Largest depth of the rod's axis in a rigid obstacle at the end of a step [m].
   double deepest_contact = 0;

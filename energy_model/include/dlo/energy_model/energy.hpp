@@ -47,7 +47,8 @@ struct EnergyOptions {
 /// coefficients of the strains in orthonormal Legendre polynomials (README.md).
 /// @return the lowest stable shape that was found, else the lowest other equilibrium, else the
 /// reason why there is none. Stability is proven by the second variation. It is proven that no
-/// equilibrium is lower only for one clamp under parallel forces without an obstacle
+/// equilibrium is lower only for a uniform, round and straight rod with one clamp under parallel
+/// forces without an obstacle
 /// @throws std::invalid_argument if the problem or an option is out of range or not supported; if
 /// grips are as far apart as the rod between them is long or farther, unless taut_line() applies;
 /// if loads, grips and sections divide the rod into too many elements

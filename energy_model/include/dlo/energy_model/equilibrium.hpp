@@ -87,9 +87,10 @@ struct [[nodiscard]] Equilibrium {
   /// stability of such a part is proven without it.
   double smallest_eigenvalue = std::numeric_limits<double>::quiet_NaN();
   /// `energy`, if `near_singular`: number of eigenvalues that are zero to the tolerance. Each is a
-  /// direction in which a fold or a bifurcation leaves the shape undetermined. It is 0 if only the
-  /// Newton step is too large. Rigid-body modes do not count, because they leave no doubt about the
-  /// shape. Always 0 for `exact`.
+  /// direction in which a fold or a bifurcation leaves the shape undetermined. At least 1 if an
+  /// eigenvalue may vanish within the error, or if the rod passes very near to a yielding
+  /// obstacle's middle. It is 0 if only the Newton step is too large. Rigid-body modes do not
+  /// count, because they leave no doubt about the shape. Always 0 for `exact`.
   int neutral_directions = 0;
   /// `energy`: energies of the stable equilibria that the search found, lowest first, at most 64;
   /// each mirror image has an entry of its own [J]. Empty if the call was given a known shape
