@@ -33,9 +33,9 @@ struct EnergyOptions {
   double time_limit = std::numeric_limits<double>::infinity();
   /// Known equilibrium of a similar problem with the same length and clamps, from which the solver
   /// starts instead of a search. The solver follows its branch, so that a snap-through shows where
-  /// the branch ends. If no equilibrium is found from it, a search follows. search_energy() and
-  /// all_energy() do not use it. It has to outlive the call. If clamps twist the rod, its `twists`
-  /// hold the twist angle of each part.
+  /// the branch ends; the result may be a `saddle`. If no equilibrium is found, a search follows.
+  /// search_energy() and all_energy() do not use it. It has to outlive the call. If clamps twist
+  /// the rod, its `twists` hold the twist angle of each part.
   const Equilibrium* start = nullptr;
 };
 
@@ -54,15 +54,15 @@ struct EnergyOptions {
 /// if loads, grips and sections divide the rod into too many elements
 Equilibrium solve_energy(const Problem& problem, const EnergyOptions& options = {});
 
-/// Finds the equilibrium to which a local search from the points of a shape converges. A penalty
-/// equilibrium of a polygon through the points detects the contacts, with each obstacle on the side
-/// on which the points lie. The rod descends from that polygon; Newton's method and the certificate
-/// follow. A saddle is left along a direction of negative curvature. No other initial guess is
-/// tried, so the result need not be the lowest equilibrium; its status states whether it is an
-/// equilibrium and whether it is stable. Only the directions from point to point are used: the
-/// grips determine the position of the rod. Each span between clamps starts from its own points. A
-/// taut rod, or one with negligible bending stiffness (shape_without_search()), has one
-/// equilibrium, which is returned for all points.
+/// Finds the equilibrium to which a local search from the points of a shape converges. If there are
+/// obstacles, a penalty equilibrium of a polygon through the points detects the contacts, with each
+/// obstacle on the side on which the points lie. The rod descends from that polygon, else from the
+/// points; Newton's method and the certificate follow. A saddle is left along a direction of
+/// negative curvature. No other initial guess is tried, so the result need not be the lowest
+/// equilibrium; its status states whether it is an equilibrium and whether it is stable. Only the
+/// directions from point to point are used: the grips determine the position of the rod. Each span
+/// between clamps starts from its own points. A taut rod, or one with negligible bending stiffness
+/// (shape_without_search()), has one equilibrium, which is returned for all points.
 /// @param arc_lengths  arc lengths of the points [m], strictly growing, in [0, length], two or more
 /// @param points       positions [m], 3 x M
 /// @throws std::invalid_argument as solve_energy(), or if the points are out of range

@@ -54,8 +54,8 @@ struct [[nodiscard]] Equilibrium {
   std::string message = "never ran";  ///< the status in words, with the number of zero modes
   /// Cost of the call; in a list of equilibria usually only the first one counts the whole cost.
   /// `energy`: evaluations of energy and gradient by descents and Newton's method from all initial
-  /// guesses, and of the polygons that detect contact. Hessians and the evaluations that only
-  /// verify a shape do not count.
+  /// guesses, and of the polygons that detect contact. Hessians do not count; of the
+  /// evaluations of a certificate at most one counts.
   /// `exact`: integrations of a whole span, or of the whole rod if there is contact, with or
   /// without derivatives. Its polygons do not count.
   int evaluations = 0;

@@ -141,8 +141,8 @@ struct Problem {
 [[nodiscard]] bool has_couples(const Problem& problem);
 
 /// Whether all loads have a potential, so that an energy determines stability: no drag and no load
-/// that follows the rod. If there are couples, on clamps too, they have to be across the plane of
-/// the rod, fewer than two clamps hold frames, and material directors bend about d2 alone.
+/// that follows the rod. Couples, on clamps too, have to be across the plane of the rod. Fewer than
+/// two clamps may then hold frames, and material directors have to bend about d2 alone.
 [[nodiscard]] bool has_potential(const Problem& problem);
 
 /// Throws if a load is of a kind that has no potential (drag, a load that follows the rod), for
