@@ -7,7 +7,7 @@
 namespace dlo::force_model {
 namespace {
 
-constexpr double older_block_weight = 0.8;  // weight of older blocks
+constexpr double older_block_weight = 0.8;
 
 /// Ratio of estimate to true stiffness up to which the estimate is kept [-]. Below it, heavy_ball's
 /// steps move the slowest mode at least half as fast as possible, which does not justify a restart.

@@ -42,7 +42,7 @@ class ModeEstimate {
   /// update starts a new block.
   void update_fastest(double inner_mode);
 
-  /// Restarts the estimate with this stiffness if the estimate is far above it.
+  /// Restarts the estimate with this stiffness if the estimate is more than twice as large.
   /// @param slowest  slowest mode of the tangent stiffness of the present shape; infinity: unknown
   /// [N/m]
   void correct_slowest(double slowest);

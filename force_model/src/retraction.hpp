@@ -9,9 +9,10 @@ namespace dlo::force_model {
 /// linear solve does not stretch it. With a segment a and the difference d between the movements of
 /// its end and its beginning, u = a/|a|,
 ///     |a'| = |a| + u.d,   a'/|a'| along a + d                                            (1)
-/// Anchors move exactly as given. A part between an anchor and a free end is built from (1). A part
-/// between two anchors is built from the first one. The remaining gap at the second anchor is
-/// distributed over its points in proportion, and Newton steps on the lengths alone,
+/// where |a'| is at least |a|/10. Anchors, or P_0 if there are none, move exactly as given.
+/// A part between an anchor and a free end is built from (1). A part between two anchors is built
+/// from the first one. The remaining gap at the second anchor is distributed over its points in
+/// proportion, and Newton steps on the lengths alone,
 ///     J J^T y = lengths (1) - lengths,   P += J^T y                                        (2)
 /// restore the lengths, where J is the derivative of the lengths by the inner points. Only the
 /// constructor allocates.

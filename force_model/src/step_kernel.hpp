@@ -59,7 +59,7 @@ struct WallLanes {
 struct ProposedStep {
   PerLane largest_squared;  ///< largest square of the movements that the limit compares [m^2]
   PerLane sum_squared;      ///< sum of their squares; not finite if any movement is not [m^2]
-  PerLane oscillating;      ///< number of points that reverse their direction for the second time
+  PerLane oscillating;      ///< number of points that reverse their direction twice in succession
 };
 
 /// Results of a measurement of the modes, see mode_bounds and ModeEstimate.
@@ -83,9 +83,9 @@ struct StepKernel {
   /// Computes external_forces = loads + walls.
   void (*add_walls)(const PointBlock& block, const WallLanes* walls, std::ptrdiff_t count);
   /// Computes the forces on free points = contraction + bending + twist + `applied` (loads or
-  /// external_forces), and 0 for other points. `regular` is
-  /// set to 1 for rods for which the formulas hold at every joint. It is set to 0 if a segment has
-  /// no direction or a joint is folded beyond hooke_fold_angle: then `forces` is undefined.
+  /// external_forces), and 0 for other points. `regular` is set to 1 for rods for which the
+  /// formulas hold at every joint. It is set to 0 if a segment has no direction or a joint of
+  /// either law is folded beyond hooke_fold_angle: then `forces` is undefined.
   void (*compute_forces)(const PointBlock& block, PointArray applied, PerLane& regular);
   /// Compares positions and forces with those of the last measurement and replaces the latter.
   void (*measure_modes)(const PointBlock& block, ModeMeasurement& measured);

@@ -29,7 +29,6 @@ JointFactor joint_factor(const Bending& bending, double L, const Eigen::Vector3d
   return factor;
 }
 
-/// Returns the second derivative by s of the angle of s in the plane z = 0.
 Eigen::Matrix3d second_of_direction_angle(const Eigen::Vector3d& s) {
   const double square = s.head<2>().squaredNorm();
   const double xy = 2 * s.x() * s.y();

@@ -15,8 +15,7 @@ namespace dlo::force_model {
 
 /// Adds contraction: c_c/L along each segment, and the transverse stiffness due to its tension.
 /// @param largest_compression  largest reduction of the transverse stiffness by compression, as a
-/// fraction
-///                      of c_c/L [-]
+/// fraction of c_c/L [-]
 template <typename Stiffness>
 void add_segments(const Rod& rod, const Eigen::Ref<const Eigen::Matrix3Xd>& points,
                   double largest_compression, Stiffness& stiffness) {

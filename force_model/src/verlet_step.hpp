@@ -17,7 +17,8 @@ class VerletStep {
   /// @param[in,out] points  unchanged if the step diverges [m]; both 3 x N
   void step(const Eigen::Matrix3Xd& forces, Eigen::Matrix3Xd& points, StepResult& result);
 
-  /// Returns the RMS of the movements that the velocities still cause, v/c [m].
+  /// Returns the RMS of the movements that the velocities still cause, v/c [m]; infinite without
+  /// damping.
   [[nodiscard]] double momentum() const;
 
  private:

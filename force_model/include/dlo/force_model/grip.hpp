@@ -33,7 +33,7 @@ struct GripReaction {
 };
 
 /// Returns the targets of a two-point grip: the points at distances 0 and `segment_length` along
-/// `direction` from `position - behind * direction`.
+/// the unit vector t of `direction` from `position - behind * t`.
 /// @param position   position of the gripper [m]
 /// @param direction  direction of growing point index, any length > 0 [-]
 /// @param segment_length  distance of the two points [m], > 0

@@ -11,7 +11,7 @@ struct RelaxOptions {
   /// bounded by Newton steps, is below this fraction of the rod's length [-], > 0.
   double tolerance = 1e-7;
   long max_steps = 2'000'000;  ///< number of steps or linear solves after which the search ends
-  double time_limit = std::numeric_limits<double>::infinity();  ///< largest computing time [s], > 0
+  double time_limit = std::numeric_limits<double>::infinity();  ///< largest elapsed time [s], > 0
   /// Called at intervals of steps; true ends the search as time_limit does.
   bool (*interrupted)() = nullptr;
 };
@@ -34,7 +34,8 @@ struct [[nodiscard]] RelaxResult {
   std::string message = "never ran";           ///< the status in words, with any neutral modes
   long steps = 0;  ///< steps of this call; of implicit steps the linear solves
   /// RMS distance of the points from the rest shape [m]: a bound if at rest, else an estimate. If
-  /// there is none, as at an unstable shape, it is the remaining momentum. -1: never measured.
+  /// there is none, as at an unstable shape, it is the remaining momentum, which is 0 for steps
+  /// without momentum. -1: never measured.
   double remaining_error = -1;
 };
 

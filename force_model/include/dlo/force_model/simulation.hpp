@@ -12,8 +12,8 @@ namespace dlo::force_model {
 
 class BatchBlock;
 
-/// Rod whose points move in simulated time. Steps do not allocate. They run on a kernel that is
-/// vectorised over the points and agrees with total_forces to rounding.
+/// Rod whose points move in simulated time. Steps do not allocate. Implicit steps use total_forces.
+/// Others run on a kernel that is vectorised over the points and agrees with it to rounding.
 class Simulation {
  public:
   /// Creates a simulation. @param points  initial positions [m], 3 x rod.points(); rigidly held
@@ -44,18 +44,19 @@ class Simulation {
   /// c_m. It is negative after an overshoot, which is less than a step.
   [[nodiscard]] double remaining_steps() const;
 
-  /// Steps until the rod is at rest or a limit of the options is reached. A shape is at rest if its
-  /// tangent stiffness is positive definite, and both the Newton step to the equilibrium and the
-  /// remaining momentum are below the tolerance, or below EquilibriumCheck::rounding_error if that
-  /// is larger. A small force or movement alone proves nothing, as the paper's creeping shapes
-  /// show. A rod in an unstable equilibrium is displaced by 1e-6 of its length in a direction of
-  /// negative curvature. Allocates.
+  /// Steps until the rod is at rest or a limit of the options is reached. A shape is at rest if
+  /// check_equilibrium finds it stable and proven, and both its remaining_error and the remaining
+  /// momentum are below the tolerance, or below EquilibriumCheck::rounding_error if that is larger.
+  /// A small force or movement alone proves nothing, as the paper's creeping shapes show. A rod in
+  /// an unstable equilibrium is displaced by 1e-6 of its length in a direction of negative
+  /// curvature. Allocates.
   /// @throws std::invalid_argument if an option is out of range
   RelaxResult relax(const RelaxOptions& options = {});
 
   /// Moves a gripper; a frame that it holds follows by the smallest rotation of its segment.
   /// @throws std::invalid_argument if there is no such grip, if the targets are not one finite
-  /// position per held point, or if they move a rod with natural angles out of the plane z = 0
+  /// position per held point, if the reference is not finite, or if the targets move a rod with
+  /// natural angles out of the plane z = 0
   void move_grip(std::size_t grip, const Eigen::Ref<const Eigen::Matrix3Xd>& targets,
                  const Eigen::Vector3d& reference);
   /// Moves and rotates a gripper that holds the rod's frame. Full rotations are counted from call

@@ -103,9 +103,13 @@ enum class StepStatus {
 /// Indicators of one step.
 struct StepResult {
   StepStatus status = StepStatus::diverged;  ///< how it ended
-  double c_m = 0;                            ///< scaling of this step (Formulas 17, 18, 20) [-]
-  double movement = 0;  ///< d_m: largest movement, which is compared with l_s [m]
-  /// Whether d_m was larger than l_s or, in an implicit step, dP was shortened.
+  /// Scaling of this step (Formulas 17, 18, 20) [-]; of implicit steps the share of the last dP
+  /// that was made, 0 if it lowers no energy.
+  double c_m = 0;
+  /// d_m: largest movement before the scaling, which is compared with l_s [m]; of steps by verlet
+  /// and implicit_euler the largest movement made.
+  double movement = 0;
+  /// Whether d_m was larger than l_s or, in an implicit step, the last dP was shortened.
   bool limited = false;
 };
 

@@ -27,8 +27,8 @@ struct [[nodiscard]] EquilibriumCheck {
   /// for `neutral_modes`.
   bool stable = false;
   /// Number of modes without stiffness, such as one of a rod between two pins, which can rotate
-  /// about the line through them; 3: three or more. If a force acts along one, `stable` is false.
-  /// The other members exclude these modes.
+  /// about the line through them; 3: three or more. If a force acts along one, `stable` is false;
+  /// with 3, if any point has a force. The other members exclude these modes.
   int neutral_modes = 0;
   /// The Newton step leads to an equilibrium, as a second step shows: it is at most a quarter of
   /// the first (Kantorovich), or only rounding. Otherwise `remaining_error` is no bound.

@@ -40,7 +40,7 @@ struct TwistedSpan {
 };
 
 /// Returns theta [rad]. @param points  points of the whole rod [m], 3 x (n+1)
-/// @throws std::invalid_argument if the segments do not exist
+/// @throws std::invalid_argument if the segments do not exist or the compliance is not > 0
 [[nodiscard]] double twist_angle(const TwistedSpan& span,
                                  const Eigen::Ref<const Eigen::Matrix3Xd>& points);
 
@@ -52,21 +52,21 @@ struct TwistedSpan {
 ///     P_{i+1}: -M kb / (2 b)    P_{i-1}: M kb / (2 a)    P_i: minus the sum of both
 /// Net force is zero, net torque M (t_last - t_first), t the end segments' directions: it balances
 /// the couples -M t_last and M t_first with which the rod turns the frames back. A joint that is
-/// folded back on itself has no binormal and exerts no force.
+/// folded back on itself, or next to a segment of zero length, has no binormal and exerts no force.
 /// @param[in,out] forces  added to, not overwritten [N], 3 x (n+1)
-/// @throws std::invalid_argument if the segments do not exist or shapes differ
+/// @throws std::invalid_argument as twist_angle, or if shapes differ
 void add_twist_forces(const TwistedSpan& span, const Eigen::Ref<const Eigen::Matrix3Xd>& points,
                       Eigen::Ref<Eigen::Matrix3Xd> forces);
 
 /// Computes the derivative of theta by the points (2), overwritten [rad/m], 3 x (n+1). Errors as
-/// for twist_angle.
+/// for add_twist_forces.
 void twist_gradient(const TwistedSpan& span, const Eigen::Ref<const Eigen::Matrix3Xd>& points,
                     Eigen::Ref<Eigen::Matrix3Xd> gradient);
 
 /// Returns a bound of the contribution of E to the stiffness of the fastest mode [N/m]:
 ///     |grad theta|^2 / C + 8 |M| (1 + tan(alpha/2) + tan^2(alpha/2)) / L^2
 /// The first term is exact. The second uses the largest alpha, at most hooke_fold_angle, and the
-/// shortest segment L, at least a tenth of its rest length. Errors as for twist_angle.
+/// shortest segment L, at least a tenth of its rest length. Errors as for add_twist_forces.
 [[nodiscard]] double twist_mode_bound(const TwistedSpan& span,
                                       const Eigen::Ref<const Eigen::VectorXd>& rest_lengths,
                                       const Eigen::Ref<const Eigen::Matrix3Xd>& points);

@@ -9,7 +9,7 @@ namespace dlo::obstacle {
 struct Gap {
   double value = 0;                                     ///< [m]
   Eigen::Vector3d gradient = Eigen::Vector3d::UnitY();  ///< unit vector away from the body [-]
-  /// Second derivative, the curvature of the surface [1/m].
+  /// Second derivative, the curvature of the parallel surface through the point [1/m].
   Eigen::Matrix3d hessian = Eigen::Matrix3d::Zero();
 };
 
@@ -18,9 +18,9 @@ struct Gap {
 /// is a point), a cylinder (a line), a capsule (a segment) or a block with rounded edges. If a
 /// rod's surface touches the body, its axis is on the same body grown by the rod's radius.
 ///
-/// Both models of a rod use this distance as their only definition of contact. Outside of the core
-/// it is smooth, except that its curvature jumps where a face meets an edge. Inside a block it is
-/// the distance from the nearest face.
+/// Both models of a rod use this distance for contact with a body. Outside of the core it is
+/// smooth, except that its curvature jumps where a face meets an edge. Inside the core it is minus
+/// the distance from the nearest face of the body.
 class Body {
  public:
   /// Creates the half-space y < 0.
@@ -104,7 +104,8 @@ class Body {
 
 /// Returns the number of samples per segment at which a polygon must be checked against a body, so
 /// that the body cannot pass between two of them. Samples are at most half of the smallest radius
-/// apart, but there are at most 16 per segment. @param length  length of a segment [m]
+/// apart. There are at most 16 per segment, and thinner bodies can pass.
+/// @param length  length of a segment [m], > 0
 [[nodiscard]] int samples_per_segment(const Body& body, double length);
 
 }  // namespace dlo::obstacle
