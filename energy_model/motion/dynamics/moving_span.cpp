@@ -298,7 +298,6 @@ class MovingSpan {
     return result;
   }
 
-  /// Copies the integrator's statistics.
   void copy_statistics(const SpanIntegrator& integrator, SpanRun& run) const {
     run.steps = integrator.steps();
     run.smallest_step = integrator.smallest_step() * time_;
@@ -306,8 +305,8 @@ class MovingSpan {
     run.depth = integrator.depth() * length_;
   }
 
-  /// Prepares the initial state: satisfies the constraints, and sets initial velocities if the rod
-  /// is in motion. @return the reason of a failure; empty on success
+  /// Prepares the initial state: satisfies the constraints, and sets initial velocities if they are
+  /// given or the rod is in motion. @return the reason of a failure; empty on success
   [[nodiscard]] std::string prepare_initial_state(SpanIntegrator& integrator, SpanDynamics& model,
                                                   const DynamicsOptions& options,
                                                   SpanInstant& at) const {
@@ -324,12 +323,12 @@ class MovingSpan {
     return integrator.project(at);
   }
 
-  /// Simulates with one contact law; ends when the rod enters a rigid obstacle too deeply.
   [[nodiscard]] static SolveStatus status_of(const std::string& problem, const Deadline& deadline) {
     if (problem.empty()) return SolveStatus::converged;
     return deadline.passed() ? SolveStatus::time_limit : SolveStatus::failed;
   }
 
+  /// Simulates with one contact law; ends when the rod enters a rigid obstacle too deeply.
   [[nodiscard]] SpanRun run_with(const ContactLaw& contact, const SpanMotion& motion,
                                  const DynamicsOptions& options, const Deadline& deadline) const {
     SpanRun result;

@@ -190,9 +190,9 @@ Eigen::VectorXd SpanDynamics::residual(const Eigen::Ref<const Eigen::VectorXd>& 
   return result;
 }
 
-/// Sums the stiffness of bending, of contacts, and of the internal force, which keeps its direction
-/// when the tangents rotate. The latter is nearly all of the stiffness of a thread under tension T,
-/// where bending has the fraction EI / (T l^2).
+/// Sums the stiffness of strains, of rigid contacts, and of the internal force, which keeps its
+/// direction when the tangents rotate. The latter is nearly all of the stiffness of a thread under
+/// tension T, where bending has the fraction EI / (T l^2).
 Eigen::MatrixXd SpanDynamics::stiffness(const Eigen::Ref<const Eigen::VectorXd>& multipliers) {
   const Eigen::MatrixX3d tangents = work_gradient(multipliers);
   std::vector<Eigen::Matrix3d> curvatures(nodes_.elements().size(), Eigen::Matrix3d::Zero());

@@ -96,7 +96,7 @@ class SpanDynamics {
   /// Velocities of the points.
   [[nodiscard]] const Eigen::MatrixX3d& velocities() const { return velocity_; }
   /// Returns the component along the unknowns of the points' change of momentum from these
-  /// velocities; zero if only grips exert impulses.
+  /// velocities: jacobian()^T times the impulses of the grips if no other impulses act.
   [[nodiscard]] Eigen::VectorXd impulse(const Eigen::MatrixX3d& before);
   /// Residuals of the constraints: of positions, velocities and accelerations, one column each.
   [[nodiscard]] Eigen::MatrixX3d constraint_residuals() const;
@@ -104,7 +104,8 @@ class SpanDynamics {
   [[nodiscard]] Eigen::MatrixXd jacobian();
   [[nodiscard]] Eigen::MatrixXd mass_matrix();
   /// Derivatives of the residual at these accelerations and multipliers: stiffness() by x, without
-  /// the derivatives of accelerations in space; damping() by v, without gyroscopic terms.
+  /// the derivatives of forces_ (accelerations in space, drag and soft obstacles); damping() by v,
+  /// without gyroscopic terms and with the mean of the drag.
   [[nodiscard]] Eigen::MatrixXd stiffness(const Eigen::Ref<const Eigen::VectorXd>& multipliers);
   [[nodiscard]] Eigen::MatrixXd damping(const Eigen::MatrixXd& mass);
 
@@ -125,7 +126,7 @@ class SpanDynamics {
   /// Returns the largest depth within a rigid obstacle; 0 without contact.
   [[nodiscard]] double depth() const;
 
-  /// Returns the shape in the span's own frame.
+  /// Returns the shape along SpanDrive's axes.
   [[nodiscard]] SpanShape shape(const Eigen::VectorXd& x) const;
 
  private:
@@ -174,7 +175,7 @@ class SpanDynamics {
   Eigen::MatrixX3d t_, t_rate_;                          // tangents at the nodes and their rates
   Eigen::MatrixX3d position_, velocity_, acceleration_;  // motion of the points in space
   VectorMotion end_tangent_, end_d1_;
-  Eigen::MatrixX3d quadratic_drag_;  // forces on the points; empty if there is none
+  Eigen::MatrixX3d quadratic_drag_;  // minus its forces on the points; empty if there is none
   double mean_drag_ = 0;             // drag plus the derivative of quadratic drag, per length
   // Forces of the points: inertia and drag minus loads and soft obstacles.
   Eigen::MatrixX3d forces_;

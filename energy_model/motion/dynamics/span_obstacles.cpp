@@ -47,7 +47,7 @@ Eigen::MatrixX3d SpanDynamics::tangent_gradient(const ContactPoint& touch,
   return grid_.points(touch.element).weights(touch.point) * force.transpose();
 }
 
-/// Adds the derivatives of the contact forces by the unknowns.
+/// Adds the derivatives of the residual by the unknowns due to rigid contacts, with fixed normals.
 /// @param derivative  ContactPoint::by_depth or ContactPoint::by_rate
 void SpanDynamics::add_contact_derivatives(double ContactPoint::*derivative,
                                            Eigen::MatrixXd& matrix) {

@@ -66,7 +66,7 @@ struct VibratingSpan {
   bool flat = false;  ///< whether its shape is planar
 
   /// Returns the displacement by a mode (derivatives of the tangents, nodes x 3) of the point at an
-  /// arc length, along the span's axes.
+  /// arc length, along the axes of `mode`.
   [[nodiscard]] Eigen::Vector3d displacement(double at, double length,
                                              const Eigen::MatrixX3d& mode) const {
     const double s = std::clamp(placed.s_of(at, length), 0.0, placed.span.length);
@@ -267,7 +267,8 @@ void require_energy_in_space(const Problem& problem) {
           "0: a couple has no potential out of the plane of the rod");
 }
 
-/// Checks that nothing bends or twists the rod. @throws std::invalid_argument otherwise
+/// Checks that there are no weight, loads, obstacles or natural strains; not the clamps' frames.
+/// @throws std::invalid_argument otherwise
 void require_no_bending_loads(const Problem& problem) {
   const char* where = "taut_vibrations";
   double weight = 0;

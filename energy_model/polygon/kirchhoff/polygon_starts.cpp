@@ -66,7 +66,8 @@ std::vector<Eigen::Vector3d> axes_of(const RodSpan& span, const Quaterniond& alo
   return axes;
 }
 
-/// Returns the frames of the stress-free rod, with its first clamp at the right place.
+/// Returns the frames of the stress-free rod with the frame of its first clamp, or without a clamp
+/// `along` at its begin.
 Frames natural_shape(const RodSpan& span, const RodMesh& mesh, const Quaterniond& along) {
   Frames shape(static_cast<std::size_t>(mesh.intervals()));
   const auto half = [&](Eigen::Index i, double side) {

@@ -20,7 +20,7 @@ namespace dlo::energy_model {
 /// b / h: any frames with these tangents are valid.
 struct RelaxedPolygon {
   std::vector<Eigen::Quaterniond> frames;  ///< frames of the intervals
-  /// Rotations of the frames at clamps that do not hold them, about the clamps' directions [rad].
+  /// Rotation of each clamp's frame about its direction, see clamp_frame(); 0 for the first [rad].
   std::vector<double> turns;
   Eigen::Matrix3Xd force;  ///< carried force n_i including the contribution of the grips
   double energy = 0;
@@ -67,7 +67,8 @@ struct PolygonMinima {
 /// Constraint of an augmented Lagrangian that the sum of h_i t_i over the intervals between two
 /// neighbouring grips is the vector from one to the other. Its energy is
 ///     multiplier . gap + 1/2 penalty |gap|^2,
-/// so that the rod between the grips carries the force - multiplier - penalty gap.
+/// so that the rod between the grips carries -multiplier - penalty gap in addition to
+/// internal_force().
 struct ChordConstraint {
   Eigen::Index first, end;
   Eigen::Vector3d chord;

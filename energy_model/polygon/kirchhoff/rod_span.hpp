@@ -58,10 +58,10 @@ struct RodSpan {
   /// Plane of grips and forces, if they share one and the rod bends in it. Its normal is the second
   /// axis of a rod that is not round().
   std::optional<Plane> plane;
-  /// Frame that the first clamp holds. It is arbitrary about the tangent for a rod that is round()
-  /// and not twisted().
+  /// Frame that the first clamp holds. It is arbitrary about the tangent for a rod that is round(),
+  /// not twisted() and without has_axes.
   Eigen::Matrix3d first_frame = Eigen::Matrix3d::Identity();
-  bool has_potential = true;  ///< whether all loads have a potential
+  bool has_potential = true;  ///< whether all loads have one; set by whole_span_with_axes() only
   bool has_axes = false;      ///< whether a load follows d1 or d2 of a rod that is round()
   /// Roll that first_frame contains [rad]; zero for a rod that is cut at its clamps.
   double first_roll = 0;
@@ -106,8 +106,8 @@ using ClampFrames = std::vector<std::optional<Eigen::Matrix3d>>;
 [[nodiscard]] RodSpan whole_directed_span(const Problem& problem);
 
 /// Returns the whole rod as whole_directed_span() or whole_span() does, for loads without a
-/// potential: the frame of the first clamp is that in which such loads are given, for a round rod
-/// too.
+/// potential, with its plane. If loads follow d1 or d2 of a round rod, the frame of the first clamp
+/// is that in which they are given.
 /// @throws std::invalid_argument as whole_directed_span(), or if a load follows a round rod along
 /// d1 or d2 and there is no clamp, d1 is undetermined, or the rod leaves a plane without a
 /// torsional_stiffness
