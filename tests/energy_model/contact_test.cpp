@@ -199,7 +199,8 @@ TEST(Contact, APointIsReleasedByAnObstacleThatMovesAway) {
   const double reach = -test::point_at(solve_energy(free), 1).y();
   const std::vector<double> at = equal_arc_lengths(free.length, 10001);
   const Eigen::Matrix3Xd alone = solve_energy(free).sample(at).points;
-  // Returns the distance of the unloaded rod from a peg whose top is at y = -top; < 0 inside.
+  // Returns the distance of the rod without obstacle from a peg whose top is at y = -top; < 0
+  // inside.
   const auto from_peg = [&](double top) {
     const Eigen::Vector3d centre(0.7, -top - 0.1, 0);
     return (alone.colwise() - centre).colwise().norm().minCoeff() - 0.1;

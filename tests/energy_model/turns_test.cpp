@@ -42,9 +42,8 @@ HelixShape helix_of(double turns, double radius, double pitch, int points) {
 }
 
 /// Fuller: a curve that can be laid straight without its tangent passing the opposite direction has
-/// the area on the unit sphere between its tangents and the axis as its writhe. Of the two steeper
-/// ones some tangents are beyond the half of the sphere about the ends', so that crossings are
-/// summed.
+/// the area on the unit sphere between its tangents and the axis as its writhe. For the pitch 0.5
+/// some tangents are more than 90 deg from those of the ends, so that crossings are summed.
 TEST(Writhe, OfAHelixIsTheAreaOfItsTangents) {
   for (const double pitch : {0.5, 1.0, -1.0}) {
     const HelixShape helix = helix_of(4, 0.1, std::abs(pitch), 2000);

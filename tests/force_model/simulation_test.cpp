@@ -72,7 +72,7 @@ TEST(OscillationDamping, LeavesOutMovementsOfRoundingSize) {
 }
 
 TEST(OscillationDamping, GrowsWhilePointsTurnBackAndFallsToOneAfterwards) {
-  // Twice the stable step: the contraction modes turn back in every step.
+  // 2.2 times the stable step: the contraction modes turn back in every step.
   const double c_F = 2.2 / mode_bounds(steel_rod(), SteelRod().straight()).fastest * 2;
   Eigen::Matrix3Xd start = SteelRod().straight();
   start(0, 8) += 1e-4;
