@@ -20,9 +20,9 @@ struct BatchRod {
 };
 
 /// Vectorised batch of rods with equal number of points, bending law, size of natural_turns, step
-/// policy and instruction set. A block contains eight rods, and one instruction moves the same
-/// point of all of them. Batches are meant for sweeps, calibration and stability maps. Lengths,
-/// stiffnesses, loads, walls, grips, initial points and step constants may differ from rod to rod.
+/// policy and instruction set. A block contains eight rods, and vector instructions move the same
+/// point of several of them. Batches are meant for sweeps, calibration and stability maps. Lengths,
+/// stiffnesses, loads, obstacles, grips, initial points and step constants may differ between rods.
 /// Each rod moves as in its own Simulation, up to rounding. Rods between grips that hold their
 /// frame are refused, because only a Simulation counts their twist, and so are steps with
 /// velocities and implicit steps. Functions throw std::out_of_range for a block that does not
