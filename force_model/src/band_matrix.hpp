@@ -18,7 +18,6 @@ class BandMatrix {
   /// finite, as at a joint that is folded back on itself, is ignored, because its stiffness is
   /// unknown.
   void add(Eigen::Index i, Eigen::Index j, const Eigen::Matrix3d& block);
-  /// Adds a value to the diagonal of a point.
   void add_to_diagonal(Eigen::Index i, double value);
 
   [[nodiscard]] Eigen::Index points() const { return static_cast<Eigen::Index>(rows_.size()); }

@@ -35,7 +35,6 @@ void check_grip(const Grip& grip, Eigen::Index points) {
           "> 0");
 }
 
-/// Checks the twist parameters of rods with two or more grips that hold the frame.
 void check_twist(const Rod& rod) {
   const Twist& twist = rod.twist;
   require_not_negative("Rod", "torsional stiffness", twist.stiffness);

@@ -113,7 +113,6 @@ void add_joints(const Rod& rod, const Eigen::Ref<const Eigen::Matrix3Xd>& points
   }
 }
 
-/// Adds walls.
 template <typename Stiffness>
 void add_walls(const Rod& rod, const Eigen::Ref<const Eigen::Matrix3Xd>& points,
                Stiffness& stiffness) {

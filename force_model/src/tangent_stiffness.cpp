@@ -165,7 +165,6 @@ void add_twist(const Rod& rod, const Eigen::Ref<const Eigen::Matrix3Xd>& points,
   for_each_twisted_span(rod, of_span);
 }
 
-/// Adds all terms of the rod.
 void add_all(const Rod& rod, const Eigen::Ref<const Eigen::Matrix3Xd>& points,
              TangentStiffness& stiffness) {
   add_segments(rod, points, std::numeric_limits<double>::infinity(), stiffness);

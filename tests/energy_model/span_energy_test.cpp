@@ -121,7 +121,6 @@ Span span_with_couple(bool planar) {
   return span;
 }
 
-/// Makes a span, planar or not.
 struct Case {
   Span (*make)(bool planar);
   bool planar;

@@ -21,7 +21,6 @@ namespace {
 
 using Solver = Equilibrium (*)(const Problem&);
 
-/// Test of both models, by name.
 class BothModels : public testing::TestWithParam<std::pair<const char*, Solver>> {
  protected:
   [[nodiscard]] static Equilibrium solved(const Problem& problem) {

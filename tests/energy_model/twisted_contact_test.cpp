@@ -137,7 +137,6 @@ TEST(TwistedContact, StartedFromItsOwnShapeItIsConfirmed) {
   EXPECT_LT(again.evaluations, rod.evaluations);
 }
 
-/// How a rod is held above a floor.
 enum class Held { one_clamp, two_clamps, frames };
 
 Problem rod_held_by(Held held) {

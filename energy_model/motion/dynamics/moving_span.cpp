@@ -67,7 +67,6 @@ StartShape start_shape_at(const TangentField& field, const Eigen::VectorXd& node
   return result;
 }
 
-/// A span between moving clamps.
 class MovingSpan {
  public:
   /// @param rod    Problem::grips are at their positions at the begin, and each has a motion

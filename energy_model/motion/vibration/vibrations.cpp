@@ -57,7 +57,6 @@ ShapeAxes shape_axes(const Eigen::Matrix3Xd& tangents) {
   return result;
 }
 
-/// One span and its modes.
 struct VibratingSpan {
   PlacedSpan placed;
   PositionOperator reach;

@@ -79,7 +79,6 @@ struct RodModel {
   Eigen::VectorXd descent;        ///< negative gradient
 };
 
-/// A Newton step.
 struct RodStep {
   Eigen::Matrix3Xd spins;  ///< spins of the frames, one per column
   double largest = 0;      ///< largest spin of an interval's frame [rad]

@@ -18,7 +18,6 @@ void require_in_plane(const char* problem, const char* what, const Points& vecto
           "0 with natural turns");
 }
 
-/// Checks the twists of a polygon.
 void require_twists(const PolygonProblem& problem) {
   const Eigen::Index n = problem.rest_lengths.size();
   const auto count = static_cast<double>(problem.twists.size());

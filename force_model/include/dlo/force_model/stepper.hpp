@@ -104,7 +104,7 @@ enum class StepStatus {
 struct StepResult {
   StepStatus status = StepStatus::diverged;  ///< how it ended
   /// Scaling of this step (Formulas 17, 18, 20) [-]; of implicit steps the share of the last dP
-  /// that was made, 0 if it lowers no energy.
+  /// that was made, 0 if no share lowers the energy.
   double c_m = 0;
   /// d_m: largest movement before the scaling, which is compared with l_s [m]; of steps by verlet
   /// and implicit_euler the largest movement made.
