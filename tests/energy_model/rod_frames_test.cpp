@@ -59,7 +59,7 @@ void expect_as_integrated(int fields, double size, const NaturalStrains& natural
   EXPECT_LT((state.q.rowwise().norm().array() - 1).abs().maxCoeff(), 1e-14);
 }
 
-TEST(RodFrames, AgreeWithAnotherIntegratorWhereTheRodTurnsByThirtyRadians) {
+TEST(RodFrames, AgreeWithAnotherIntegratorWhereTheRodRotatesByThirtyRadians) {
   expect_as_integrated(2, 30, {});
 }
 

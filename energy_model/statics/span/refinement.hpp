@@ -11,8 +11,9 @@ namespace dlo::energy_model {
 inline constexpr int most_contact_rounds = 16;
 
 /// Raises the number of coefficients of an equilibrium until the last ones are negligible; if the
-/// affordable number is not enough, continues on an adapted mesh. A shape that stays unresolved
-/// becomes `failed`, or `time_limit`; a solution that is no equilibrium is returned unchanged.
+/// affordable number is not enough, continues on an adapted mesh. A shape whose last coefficients
+/// stay too large becomes `failed`, or `time_limit`; a solution that is no equilibrium is returned
+/// unchanged.
 /// @param solution  on the span of `on`, with the same elements
 [[nodiscard]] SpanSolution refine(LocalSolver& on, SpanSolution solution);
 
