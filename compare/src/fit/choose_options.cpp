@@ -1,4 +1,4 @@
-#include "fit/choose_options.hpp"
+#include "fit/fit_from.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -8,7 +8,6 @@
 #include <utility>
 
 #include "dlo/compare/error.hpp"
-#include "fit/fit_from.hpp"
 #include "least_squares/fitted_rods.hpp"
 #include "least_squares/measured_shapes.hpp"
 #include "wire/identifiable.hpp"

@@ -13,7 +13,6 @@
 #include "dlo/compare/calibrated_rod.hpp"
 #include "dlo/compare/error.hpp"
 #include "fit/chain_springs.hpp"
-#include "fit/choose_options.hpp"
 #include "fit/material_profiles.hpp"
 #include "least_squares/measured_shapes.hpp"
 #include "wire/between_shapes.hpp"

@@ -10,7 +10,6 @@
 #include <vector>
 
 #include "dlo/compare/error.hpp"
-#include "fit/choose_options.hpp"
 #include "fit/fit_from.hpp"
 #include "wire/identifiable.hpp"
 #include "wire/leave_one_out.hpp"
