@@ -64,7 +64,7 @@ struct MjcfGripper {
   double at = 0;                                       ///< arc length [m]
   Eigen::Vector3d position = Eigen::Vector3d::Zero();  ///< [m]
   std::optional<Eigen::Vector3d> direction;            ///< unit vector of a clamp
-  /// d1 of a clamp; empty for all clamps if none is rotated from its reference pose, and for a
+  /// d1 of a clamp; empty for all clamps if no weld gives a rotation (sites or relpose), and for a
   /// clamp that stands for the spring of the first joint.
   std::optional<Eigen::Vector3d> d1;
   std::string words;  ///< "the first body is fixed"
@@ -73,14 +73,16 @@ struct MjcfGripper {
 /// Finds the grippers of a cable: a first body that is fixed or jointed to a fixed body, and
 /// constraints weld and connect to fixed bodies.
 /// @param constrained  whether constraints count;  @param notes  receives the assumptions
-/// @throws InputError that names file, line, element and attribute of what no gripper can represent
+/// @throws InputError that names file, line, element and attribute of what no gripper can
+/// represent, or the first body if nothing holds the cable
 [[nodiscard]] std::vector<MjcfGripper> find_mjcf_grippers(const MjcfAttributes& attributes,
                                                           const MjcfWorld& world,
                                                           const MjcfChain& chain, bool constrained,
                                                           std::vector<std::string>& notes);
 
-/// Returns the geoms of fixed bodies that collide with a cable, as tables [[obstacle]] of a scene.
-/// A geom that no obstacle can represent is added to the refusals of `attributes`.
+/// Returns the geoms of fixed bodies that collide with the cable's last body, as tables
+/// [[obstacle]] of a scene. Geoms around a gripper are neglected. A geom that no obstacle can
+/// represent is added to the refusals of `attributes`.
 /// @param notes  receives the number of neglected ones
 /// @throws InputError that names an element of <contact> other than exclude
 [[nodiscard]] std::string mjcf_obstacles(const MjcfAttributes& attributes, const MjcfWorld& world,

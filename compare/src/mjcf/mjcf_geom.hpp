@@ -11,7 +11,7 @@ namespace dlo::compare {
 struct MjcfGeom {
   enum class Type { plane, sphere, capsule, ellipsoid, cylinder, box, other };
   Type type = Type::sphere;
-  Eigen::Vector3d size = Eigen::Vector3d::Zero();  ///< attribute `size` as in MJCF [m]
+  Eigen::Vector3d size = Eigen::Vector3d::Zero();  ///< half-sizes [m]; 0 for a plane
   MjcfPose pose = MjcfPose::Identity();            ///< pose in the body's frame
   double mass = 0;                                 ///< [kg]
   int contype = 1, conaffinity = 1;                ///< bit masks for collisions

@@ -233,7 +233,7 @@ class GripperFinder {
   const MjcfWorld& world_;
   const MjcfChain& chain_;
   std::vector<MjcfGripper> holds_;
-  bool is_clamp_rotated_ = false;  // whether a clamp is rotated from its reference pose
+  bool is_clamp_rotated_ = false;  // whether a weld gives a rotation (sites or relpose)
 };
 
 }  // namespace

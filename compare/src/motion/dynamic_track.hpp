@@ -13,7 +13,7 @@ namespace dlo::compare {
 /// The moving rod at the time of a frame of a Track.
 struct DynamicFrame {
   double time = 0;  ///< [s]
-  /// The zeros of gravity and loads are those of the track.
+  /// The energies of gravity and loads are equal to the track's in the first frame.
   energy_model::EnergyBalance energy;
   std::vector<GripperLoad> grippers;       ///< in the scene's order
   std::vector<Eigen::Vector3d> obstacles;  ///< force of each obstacle on the rod, in the scene's
@@ -56,8 +56,8 @@ struct DynamicTrack {
 /// velocities with which equilibrium shapes follow them. The errors of the equilibrium shapes and
 /// of the force model's are measured against it.
 /// @param track  of the same scene and options
-/// @throws InputError as require_dynamic(), and if the damping is out of range; ConvergenceError if
-/// there is no initial shape, or if the first frame is not reached
+/// @throws InputError as require_dynamic() and given_start(), and if the damping is out of range;
+/// ConvergenceError if there is no initial shape, or if the first frame is not reached
 [[nodiscard]] DynamicTrack dynamic_track(const Scene& scene, const Track& track,
                                          const TrackOptions& options, const RodDamping& damping);
 

@@ -56,7 +56,7 @@ struct ForceErrors : TrackErrors {
 /// Summary of the force model's frames, with their errors from the energy model.
 struct ForceTrackSummary : ForceErrors {
   std::string missing_reason;  ///< why frames are missing; empty if none is
-  long steps_per_frame = 0;    ///< number of steps of the stepper
+  long steps_per_frame = 0;    ///< 0 if the force model is not requested
   double rest_error = 0;  ///< error of the first frame, at rest without lag, over the length [-]
   double median_seconds = 0;  ///< median duration of a frame's steps [s]
 };
@@ -75,6 +75,7 @@ class ForceTrack {
   /// Makes the steps of a frame.
   /// @param now  the scene at the end of the frame, without motion
   /// @return false if a step diverged
+  /// @throws InputError if the force model does not support `now`
   [[nodiscard]] bool step(const Scene& now, long steps);
   /// Returns the current state. @param arc_length  of the points [m]
   [[nodiscard]] ForceFrame frame(const energy_model::Equilibrium& rod,

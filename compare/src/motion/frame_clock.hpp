@@ -48,7 +48,7 @@ class FrameClock {
                                                                const FrameClock& clock);
 
 /// Returns the problem of a frame with the given obstacles, which are the same in all frames.
-/// @throws InputError in the cases of energy_problem()
+/// @throws InputError in the cases of energy_problem(), and for loads without a potential
 [[nodiscard]] energy_model::Problem frame_problem(const Scene& now,
                                                   const std::vector<std::size_t>& obstacles);
 

@@ -122,7 +122,7 @@ class MotionMisfit {
   std::string stop_reason_;
 };
 
-/// Parameters with the least sum of squares, with residuals and derivatives there.
+/// Parameters with the least sum of squares. The derivatives may be those of an earlier step.
 struct LeastSquares {
   Eigen::VectorXd parameters, residuals;
   Eigen::MatrixXd derivatives;
@@ -141,6 +141,7 @@ struct LeastSquares {
 /// Fits the start of a recording to its first second, or to the natural time if that is longer,
 /// without changes to the scene.
 /// @return std::nullopt if the recording has too few markers
+/// @throws InputError as MotionMisfit(), ConvergenceError as least_squares()
 [[nodiscard]] std::optional<MotionStart> recorded_start(const Scene& scene,
                                                         const MarkerMotion& recording,
                                                         const RodDamping& damping,
@@ -148,8 +149,8 @@ struct LeastSquares {
 
 /// Returns the start that Scene::start defines: recorded_start() of a recording, or a shape with
 /// zero velocities; std::nullopt if the scene has no start.
-/// @param begin  time at which the rod starts [s]
-/// @throws InputError if the start has too few points
+/// @param begin  time at which a shape starts [s]; a recording starts at its first time
+/// @throws InputError if the start has too few points; also as recorded_start()
 [[nodiscard]] std::optional<MotionStart> given_start(const Scene& scene, double begin,
                                                      const RodDamping& damping,
                                                      const SolveOptions& solve);

@@ -11,7 +11,7 @@ namespace dlo::compare {
 /// Shape and velocities with which a rod with inertia starts.
 struct MotionStart {
   energy_model::StartingShape shape;
-  energy_model::StartingVelocities velocities;
+  energy_model::StartingVelocities velocities;  ///< empty: at rest
   double noise = 0;     ///< standard deviation of a coordinate from the fit of the start [m]
   double duration = 0;  ///< duration of the fitted frames [s]; 0: one frame
 };
@@ -44,7 +44,7 @@ class StartDeviation {
   /// Returns the start with rotated tangents, and with the velocities of points due to angular
   /// rates of the tangents, both across the tangents. Angles and rates are sums of Legendre's
   /// polynomials of arc length, for a clamped rod without the constant one and minus their values
-  /// at s = 0.
+  /// at s = 0. Noise and duration of the result are not set.
   /// @param modes  angles [rad], start_modes in each of two directions across the rod, then angular
   /// rates [rad/s]
   [[nodiscard]] MotionStart with(const Eigen::VectorXd& modes) const;

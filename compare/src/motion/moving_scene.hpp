@@ -58,8 +58,8 @@ struct SimulatedMotion {
 };
 
 /// Checks that a rod with inertia can be simulated.
-/// @throws InputError if the scene has a clamp that holds the rod's frame and changes its
-/// direction, loads without a potential, couples, tangential drag, or no mass
+/// @throws InputError for loads without a potential, couples, tangential drag, or no mass; also if
+/// a clamp that holds the frame of a twisted rod, or of one with directors, changes its direction
 void require_dynamic(const Scene& scene);
 
 /// Default tolerance of one step of a simulation, see DynamicsOptions::tolerance.

@@ -63,8 +63,8 @@ struct ModeOptions {
 /// Motion of a mode with stiffness k under the stepper's c_F and c_h, exactly: z^2 - (1 + c_h - c_F
 /// k) z + c_h = 0 from one step to the next (Formula 19).
 struct SteppedMode {
-  double omega = 0;        ///< [rad/s]; 0 if overdamped
-  double damping = 1;      ///< damping ratio [-]; 1 if overdamped
+  double omega = 0;        ///< [rad/s]; 0 if both z are real
+  double damping = 1;      ///< damping ratio [-]; 1 if both z are real
   bool is_stable = false;  ///< whether both |z| are at most 1
 };
 

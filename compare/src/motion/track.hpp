@@ -46,7 +46,7 @@ struct TrackOptions {
 /// computation.
 struct TrackFrame : Solution {
   double time = 0;        ///< [s]
-  bool followed = false;  ///< whether the rod stayed on the branch of the frame before
+  bool followed = false;  ///< whether the rod stayed on its branch; true in the first frame
   double work = 0;        ///< work of grippers and obstacles on the rod, since the first frame [J]
   /// Work since the frame before minus the increase of the energy, in a frame in which the rod left
   /// its branch only of the jumps, and the bound of its error by forces between those before and

@@ -16,7 +16,7 @@
 namespace dlo::compare {
 namespace {
 
-/// Moment of a straight rod's load about a grip, on the side of the grip where it is larger [N m].
+/// Moment of a straight rod's load about a grip, from one side of the grip [N m].
 struct ClampMoment {
   double along = 0;  ///< moment for the actual directions of the forces and of the rod
   double most = 0;   ///< moment if all forces were perpendicular to the rod

@@ -9,8 +9,8 @@
 namespace dlo::compare {
 namespace {
 
-/// Whether all grips, loads and obstacles in reach of a rod lie in the plane z = 0, to the last
-/// digit.
+/// Whether all grips and loads lie in the plane z = 0, to the last digit, and obstacles in reach
+/// are symmetric about it.
 bool lies_in_plane(const Scene& scene, const ForceModelSettings& settings) {
   const auto flat = [](const Eigen::Vector3d& vector) { return vector.z() == 0; };
   const auto is_in_plane = [&](const Gripper& gripper) {

@@ -28,7 +28,7 @@ struct Layout {
 void require_slack(const Scene& scene);
 
 /// Computes the positions of the points by the rules of `discretise`.
-/// @throws InputError in the same cases
+/// @throws InputError as order_along, and if there are too few points
 [[nodiscard]] Layout lay_out(const Scene& scene, const ForceModelSettings& settings);
 
 /// Returns the grips of the polygon, one for each gripper of the scene.
@@ -61,11 +61,11 @@ enum class Side {
 /// Returns a curve through all grips with the right length between them [m], 3 x M, from which a
 /// search or a simulation starts. Beyond the outermost grips it is straight. Between two it is a
 /// cubic with the grips' directions (a pin takes the direction of the line between its neighbours,
-/// a single pin that of the load) and, if the cubic is shorter than the rod, an additional arch
-/// with zero slope at the grips, in the direction of the load across the line between them. Without
-/// such a load the arch follows the clamps' directions, or else +x (+y if the grips lie along x).
-/// Every arch leaves its plane by a millionth of its length, so that a search can leave a shape
-/// that is unstable out of plane. No two neighbouring points coincide.
+/// a single pin that of the load after it, or else +x) and, if the cubic is shorter than the rod,
+/// an additional arch with zero slope at the grips, in the direction of the load across the line
+/// between them. Without such a load the arch follows the clamps' directions, or else +x (+y if the
+/// grips lie along x). Every arch leaves its plane by a millionth of its length, so that a search
+/// can leave a shape that is unstable out of plane. No two neighbouring points coincide.
 /// @param along  indices of the grippers in the order of their arc lengths
 [[nodiscard]] Eigen::Matrix3Xd start_shape(const Scene& scene,
                                            const std::vector<std::size_t>& along,
@@ -92,8 +92,9 @@ inline constexpr double dynamic_share = 0.9;
 inline constexpr double verlet_step_share = 0.5;
 
 /// Returns the stepper that a scene selects. If the scene does not give them, c_F and l_s have
-/// Table 1's proportions and c_h is dynamic_share. The stepper `verlet` takes verlet_step_share and
-/// damps the slowest mode, as mode_bounds estimates it, critically; `implicit` needs no masses.
+/// Table 1's proportions and c_h is dynamic_share; an automatic stepper chooses them itself. The
+/// stepper `verlet` takes verlet_step_share and damps the slowest mode, as mode_bounds estimates
+/// it, critically; `implicit` needs no masses.
 [[nodiscard]] force_model::StepOptions step_options(const ForceModelSettings& settings,
                                                     const Discretisation& discretisation);
 
