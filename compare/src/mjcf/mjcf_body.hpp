@@ -56,7 +56,7 @@ struct MjcfBody {
 
 /// Sets mass and centre of a body from its <inertial>, or from its geoms if it has none or the
 /// compiler's inertiafromgeom is true. @param inertial  the element, if there is one
-/// @throws InputError if neither is possible
+/// @throws InputError if inertiafromgeom is false without <inertial>, or if its mass is not >= 0
 void set_mjcf_mass(const MjcfAttributes& attributes, const pugi::xml_node& inertial,
                    MjcfBody& body);
 

@@ -30,7 +30,7 @@ struct MovingRow {
 /// Agreement of runs with the printed rows.
 struct MovingAgreement {
   /// exp of the RMS of ln(computed / printed) of the average forces: 1 means equal, 2 a typical
-  /// factor of two. Infinite if a run diverged or was stopped.
+  /// factor of two. Infinite if a run diverged or was stopped; NaN without printed rows.
   double force_factor = 0;
   /// Number of counters (steps beyond the nominal ones, c_s != 1, d_m > l_s) within 10 % of the
   /// printed value; a printed 0 requires 0.
