@@ -30,7 +30,6 @@ struct MjcfPlugin {
   double twist = 0;   ///< G [Pa]
   bool flat = false;  ///< whether the stress-free cable is straight
 
-  /// Compares all fields.
   bool operator==(const MjcfPlugin&) const = default;
 };
 

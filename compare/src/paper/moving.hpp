@@ -58,7 +58,6 @@ struct MovingExperiment {
   bool horizontal = false;  ///< whether the rod is horizontal at the start; otherwise it hangs
   MovingVariant variant = MovingVariant::relative;  ///< step formula
 
-  /// Whether all members are equal.
   bool operator==(const MovingExperiment&) const = default;
 };
 
@@ -78,7 +77,6 @@ struct MovingAssumptions {
   /// pulls it forward.
   double start_offset = 0;
 
-  /// Whether all members are equal.
   bool operator==(const MovingAssumptions&) const = default;
 };
 

@@ -20,9 +20,9 @@ struct PrintedMovingRow {
 
 /// Experiment with its result and its printed row.
 struct MovingRow {
-  MovingExperiment experiment;              ///< the experiment
+  MovingExperiment experiment;
   std::optional<PrintedMovingRow> printed;  ///< empty for variants without a printed row
-  MovingRun run;                            ///< result of the experiment
+  MovingRun run;
   /// Distance from the dynamic energy model; empty if not computed.
   std::optional<MovingError> error;
 };
