@@ -124,7 +124,7 @@ Eigen::VectorXd arc_residual(const ArcTarget& target, const RestShape& arcs) {
   return r;
 }
 
-/// Replaces unknown arc lengths by those of the nearest points of the arcs.
+/// Moves unknown arc lengths towards those of the nearest points of the arcs, along the tangents.
 void update_arc_lengths(ArcTarget& target, const RestShape& arcs) {
   const std::vector<ArcPlace> places = evaluate_arcs(arcs, target.s);
   for (Index i = 0; i < target.points.cols(); ++i) {
@@ -178,8 +178,8 @@ struct ArcFit {
   }
 };
 
-/// Fits arcs by nonlinear least squares, then unknown arc lengths to them, three times.
-/// @return the sum of squared residuals, which are distances divided by the length
+/// Fits arcs by nonlinear least squares; if arc lengths are unknown, fits these too, three times in
+/// alternation. @return the sum of squared residuals of arc_residual()
 double minimise_arc_residual(ArcTarget& target, RestShape& arcs) {
   silence_gsl();
   const auto n = static_cast<std::size_t>(target.rows() * target.points.cols());
