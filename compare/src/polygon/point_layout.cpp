@@ -328,7 +328,10 @@ PointMasses point_masses(const Scene& scene, const ForceModelSettings& settings)
   weighed.gravity = {0, -1, 0};
   for (PointLoad& load : weighed.loads) load.force = load.mass * weighed.gravity;
   weighed.distributed_loads.clear();
-  const Discretisation polygon = discretise(weighed, settings);
+  ForceModelSettings with_mass = settings;
+  if (scene.gravity.isZero(0)) with_mass.point_weight.reset();
+  if (with_mass.point_weight) *with_mass.point_weight /= scene.gravity.norm();
+  const Discretisation polygon = discretise(weighed, with_mass);
   return {-polygon.weights.row(1), polygon.weights.row(1) - polygon.rod.loads.row(1)};
 }
 

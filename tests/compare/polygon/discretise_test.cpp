@@ -8,6 +8,7 @@
 #include "dlo/compare/force_model_settings.hpp"
 #include "dlo/compare/scene_file.hpp"
 #include "dlo/compare/solution.hpp"
+#include "polygon/point_layout.hpp"
 #include "scenes.hpp"
 
 namespace dlo::compare {
@@ -31,6 +32,8 @@ TEST(Discretise, PaperBookkeepingStartsAtTheRodsEndWithEqualMasses) {
   EXPECT_NEAR(d.rod.loads.row(1).sum(), scene.weight_per_length().y(), 1e-15);
   EXPECT_DOUBLE_EQ(d.rod.loads(1, 0), d.rod.loads(1, 15));
   EXPECT_EQ(d.rod.grips.front().first_point, 0);
+  scene.force_model.point_weight = 3 * scene.gravity.norm() / 16;
+  EXPECT_NEAR(point_masses(scene, scene.force_model).rod.sum(), 3, 1e-14);
 }
 
 TEST(Discretise, ConsistentBookkeepingHoldsTheMiddleOfASegment) {
