@@ -129,14 +129,18 @@ BENCHMARK_CAPTURE(cold_clamp, gamma_18, 18);
 BENCHMARK_CAPTURE(cold_clamp, gamma_100, 100);
 BENCHMARK_CAPTURE(cold_clamp, gamma_1000, 1000);
 
-/// Measures solves while the gripper rotates to and fro by 1 degree.
-void warm_clamp(benchmark::State& state, double gamma) {
-  const std::array<Problem, 2> problems = {clamp(gamma), clamp(gamma, 1)};
+/// Measures solves that alternate between two problems.
+void follow_to_and_fro(benchmark::State& state, const std::array<Problem, 2>& problems) {
   EnergySolver solver;
   (void)solver.solve(problems[0]);
   std::size_t i = 0;
   for (auto _ : state) benchmark::DoNotOptimize(solver.follow(problems[i = 1 - i]));
   report(state, solver.follow(problems[1 - i]));
+}
+
+/// Measures solves while the gripper rotates to and fro by 1 degree.
+void warm_clamp(benchmark::State& state, double gamma) {
+  follow_to_and_fro(state, {clamp(gamma), clamp(gamma, 1)});
 }
 BENCHMARK_CAPTURE(warm_clamp, gamma_0_2, 0.2);
 BENCHMARK_CAPTURE(warm_clamp, gamma_10, 10);
@@ -172,12 +176,7 @@ void warm_two_clamps(benchmark::State& state) {
   Problem turned = two_clamps(10, 0.8, 0.3);
   turned.grips[1].direction = Eigen::AngleAxisd(std::numbers::pi / 180, Eigen::Vector3d::UnitY()) *
                               *turned.grips[1].direction;
-  const std::array<Problem, 2> problems = {two_clamps(10, 0.8, 0.3), turned};
-  EnergySolver solver;
-  (void)solver.solve(problems[0]);
-  std::size_t i = 0;
-  for (auto _ : state) benchmark::DoNotOptimize(solver.follow(problems[i = 1 - i]));
-  report(state, solver.follow(problems[1 - i]));
+  follow_to_and_fro(state, {two_clamps(10, 0.8, 0.3), turned});
 }
 BENCHMARK(warm_two_clamps)->Name("warm/two_clamps_spatial")->Unit(benchmark::kMicrosecond);
 

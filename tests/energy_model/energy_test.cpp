@@ -158,8 +158,7 @@ TEST(Energy, TheErrorStatedIsTheTrueOneWithinAFactorOfAThousand) {
         const Equilibrium finer =
             solve_energy(problem, {.terms = 2 * found.terms, .start = &found});
         ASSERT_TRUE(succeeded(finer.status)) << finer.message;
-        const double error =
-            (found.sample(s).points - finer.sample(s).points).colwise().norm().maxCoeff();
+        const double error = test::largest_point_distance(found, finer, s);
         EXPECT_LE(error, found.error_estimate + finer.error_estimate + rounding);
         EXPECT_LE(found.error_estimate, 1e3 * std::max(error, rounding));
         ++compared;

@@ -9,17 +9,15 @@
 #include <algorithm>
 #include <cstdio>
 #include <ctime>
-#include <exception>
-#include <iostream>
 #include <map>
 #include <optional>
-#include <stdexcept>
 #include <string>
 #include <vector>
 
 #include "dlo/energy_model/energy.hpp"
 #include "polygon_of_rod.hpp"
 #include "random_contact.hpp"
+#include "random_options.hpp"
 
 namespace {
 
@@ -34,30 +32,6 @@ struct Options {
   unsigned first = 0;
   double time_limit = 20;
 };
-
-Options read_options(int argc, char** argv) {
-  Options options;
-  for (int i = 1; i < argc; i += 2) {
-    const std::string name = argv[i];
-    if (i + 1 == argc) throw std::invalid_argument(name + " wants a value");
-    const std::string value = argv[i + 1];
-    std::size_t used = 0;
-    if (name == "--scenes") {
-      options.scenes = static_cast<unsigned>(std::stoul(value, &used));
-    } else if (name == "--frames") {
-      options.frames = static_cast<unsigned>(std::stoul(value, &used));
-    } else if (name == "--first") {
-      options.first = static_cast<unsigned>(std::stoul(value, &used));
-    } else if (name == "--time-limit") {
-      options.time_limit = std::stod(value, &used);
-    } else {
-      throw std::invalid_argument("unknown option " + name);
-    }
-    if (used != value.size()) throw std::invalid_argument("not a number: " + value);
-  }
-  if (!(options.time_limit > 0)) throw std::invalid_argument("--time-limit must be > 0");
-  return options;
-}
 
 /// Whether a polygon that is relaxed from a shape comes to rest in another shape with less energy.
 /// The given shape is then no minimum.
@@ -127,12 +101,11 @@ int run(const Options& options, const char* kind, bool space, unsigned scenes,
 
 int main(int argc, char** argv) {
   Options options;
-  try {
-    options = read_options(argc, argv);
-  } catch (const std::exception& error) {
-    std::cerr << "dlo_random_contacts: " << error.what() << "\n";
-    return 2;
-  }
+  dlo::test::read_options(argc, argv,
+                          {{"--scenes", dlo::test::number_reader(options.scenes)},
+                           {"--frames", dlo::test::number_reader(options.frames)},
+                           {"--first", dlo::test::number_reader(options.first)},
+                           {"--time-limit", dlo::test::number_reader(options.time_limit)}});
   int slow = 0;
   const auto planes = [](unsigned seed, bool space) -> std::optional<Problem> {
     return dlo::test::random_touching_problem(seed, space, largest_gamma);

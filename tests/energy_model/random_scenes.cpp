@@ -14,7 +14,6 @@
 #include <chrono>
 #include <cstdio>
 #include <cstdlib>
-#include <exception>
 #include <filesystem>
 #include <fstream>
 #include <iostream>
@@ -22,6 +21,7 @@
 #include <stdexcept>
 
 #include "random_balance.hpp"
+#include "random_options.hpp"
 
 namespace {
 
@@ -43,40 +43,6 @@ struct Options {
   dlo::test::ExactFrom exact = dlo::test::ExactFrom::search;
   std::string folder;
 };
-
-Options read_options(int argc, char** argv) {
-  Options options;
-  const std::map<std::string, std::uint64_t*> counts = {
-      {"--plane", &options.plane},     {"--space", &options.space}, {"--twisted", &options.twisted},
-      {"--curved", &options.curved},   {"--mixed", &options.mixed}, {"--strip", &options.strip},
-      {"--balance", &options.balance}, {"--first", &options.first}};
-  for (int i = 1; i < argc; i += 2) {
-    const std::string name = argv[i];
-    if (i + 1 == argc) throw std::invalid_argument(name + " wants a value");
-    const std::string value = argv[i + 1];
-    std::size_t used = 0;
-    const auto count = counts.find(name);
-    if (count != counts.end()) {
-      *count->second = std::stoul(value, &used);
-    } else if (name == "--exact") {
-      if (value != "search" && value != "energy") {
-        throw std::invalid_argument("--exact " + value + " (allowed: search, energy)");
-      }
-      if (value == "energy") options.exact = dlo::test::ExactFrom::energy;
-      used = value.size();
-    } else if (name == "--time-limit") {
-      options.time_limit = std::stod(value, &used);
-    } else if (name == "--write") {
-      options.folder = value;
-      used = value.size();
-    } else {
-      throw std::invalid_argument("unknown option " + name);
-    }
-    if (used != value.size()) throw std::invalid_argument("not a number: " + value);
-  }
-  if (!(options.time_limit > 0)) throw std::invalid_argument("--time-limit must be > 0");
-  return options;
-}
 
 /// Results of one model in all scenes of a kind.
 struct Tally {
@@ -186,12 +152,21 @@ int run(const Options& options, RandomSpace space, std::uint64_t count) {
 
 int main(int argc, char** argv) {
   Options options;
-  try {
-    options = read_options(argc, argv);
-  } catch (const std::exception& error) {
-    std::cerr << "dlo_random_scenes: " << error.what() << "\n";
-    return 2;
-  }
+  dlo::test::OptionReaders readers = {
+      {"--time-limit", dlo::test::number_reader(options.time_limit)},
+      {"--write", [&](const std::string& value) { options.folder = value; }},
+      {"--exact", [&](const std::string& value) {
+         if (value != "search" && value != "energy") {
+           throw std::invalid_argument("--exact " + value + " (allowed: search, energy)");
+         }
+         if (value == "energy") options.exact = dlo::test::ExactFrom::energy;
+       }}};
+  const std::map<std::string, std::uint64_t*> counts = {
+      {"--plane", &options.plane},     {"--space", &options.space}, {"--twisted", &options.twisted},
+      {"--curved", &options.curved},   {"--mixed", &options.mixed}, {"--strip", &options.strip},
+      {"--balance", &options.balance}, {"--first", &options.first}};
+  for (const auto& [name, count] : counts) readers[name] = dlo::test::number_reader(*count);
+  dlo::test::read_options(argc, argv, readers);
   if (options.balance > 0) {
     return dlo::test::print_imbalances(options.first, options.balance, options.time_limit) == 0 ? 0
                                                                                                 : 1;

@@ -115,11 +115,7 @@ TEST(RigidContactDynamics, DampedItComesToRestAsInEquilibrium) {
       expect_contact(rod, result, depth, 1e-5);
       const MovingFrame& last = result.frames.back();
       EXPECT_LT(last.energy.kinetic, 1e-8);
-      const double apart =
-          (last.sample(dense_arc_lengths).points - rest.sample(dense_arc_lengths).points)
-              .colwise()
-              .norm()
-              .maxCoeff();
+      const double apart = test::largest_point_distance(last, rest, dense_arc_lengths);
       EXPECT_LT(apart, depth / 2);
       // The position of a force at 0.5 is known to `depth`, so the force has a relative error of 3
       // depth / 0.5.

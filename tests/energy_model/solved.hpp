@@ -44,8 +44,8 @@ Eigen::Vector3d point_at(const Shape& shape, double s) {
 
 /// Returns the largest distance of two shapes' points at the same arc lengths [m].
 /// @param s  arc lengths [m]; default: 41 of a rod of unit length
-template <typename Shape>
-double largest_point_distance(const Shape& a, const Shape& b,
+template <typename A, typename B>
+double largest_point_distance(const A& a, const B& b,
                               const std::vector<double>& s = energy_model::equal_arc_lengths(1,
                                                                                              41)) {
   return (a.sample(s).points - b.sample(s).points).colwise().norm().maxCoeff();

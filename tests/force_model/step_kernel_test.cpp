@@ -110,22 +110,22 @@ std::string name(const testing::TestParamInfo<Variant>& instance) {
          (space == Space::plane ? "_plane" : "_space");
 }
 
+/// Returns the variants with these steppers, a generator of Google Test.
+template <typename Steppers>
+auto variants(const Steppers& steppers) {
+  return testing::Combine(testing::Values(BendingLaw::paper, BendingLaw::hooke), steppers,
+                          testing::Values(GripHold::rigid, GripHold::spring),
+                          testing::Values(Walls::none, Walls::two),
+                          testing::Values(Space::plane, Space::full));
+}
+
 INSTANTIATE_TEST_SUITE_P(Variants, StepKernel,
-                         testing::Combine(testing::Values(BendingLaw::paper, BendingLaw::hooke),
-                                          testing::Values(Stepper::basic, Stepper::limited,
-                                                          Stepper::relative, Stepper::dynamic,
-                                                          Stepper::automatic),
-                                          testing::Values(GripHold::rigid, GripHold::spring),
-                                          testing::Values(Walls::none, Walls::two),
-                                          testing::Values(Space::plane, Space::full)),
+                         variants(testing::Values(Stepper::basic, Stepper::limited,
+                                                  Stepper::relative, Stepper::dynamic,
+                                                  Stepper::automatic)),
                          name);
 
-INSTANTIATE_TEST_SUITE_P(Variants, UnlimitedStepKernel,
-                         testing::Combine(testing::Values(BendingLaw::paper, BendingLaw::hooke),
-                                          testing::Values(Stepper::basic),
-                                          testing::Values(GripHold::rigid, GripHold::spring),
-                                          testing::Values(Walls::none, Walls::two),
-                                          testing::Values(Space::plane, Space::full)),
+INSTANTIATE_TEST_SUITE_P(Variants, UnlimitedStepKernel, variants(testing::Values(Stepper::basic)),
                          name);
 
 TEST(Kernel, BoundsTheModesLikeModeBounds) {
