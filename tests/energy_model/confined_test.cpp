@@ -58,7 +58,15 @@ TEST(ConfinedRod, IsTheFreeOneWhereThatStaysInItsPlane) {
     const Equilibrium free = solve_energy(problem);
     const Equilibrium flat = test::converged(solve_energy(confined(problem)));
     EXPECT_NEAR(flat.energy.total(), free.energy.total(), 1e-12 * std::abs(free.energy.total()));
+    EXPECT_LT(flat.error_estimate, 1e-6);
   }
+}
+
+// Out of its plane a buckled column may rotate about the vertical.
+TEST(ConfinedRod, HasNoZeroModeOutOfThePlane) {
+  const Problem column = test::heavy_cantilever(40, 90);
+  EXPECT_EQ(test::converged(all_energy(column).front()).message, "converged, 1 zero mode");
+  EXPECT_EQ(test::converged(all_energy(confined(column)).front()).message, "converged");
 }
 
 // A shape out of the plane is not a valid initial guess.

@@ -389,7 +389,7 @@ void certify(SpanSolution& solution, NewtonBuffers& buffers) {
   Certification(solution, buffers).run();
 }
 
-void certify_out_of_plane(SpanSolution& solution, NewtonBuffers& buffers) {
+void certify_plain_cantilever(SpanSolution& solution, NewtonBuffers& buffers) {
   const Span& span = solution.model->span();
   // Only a rod that is pulled along its clamp can rotate freely, about that direction; such
   // problems are rare.
@@ -408,7 +408,7 @@ void certify_out_of_plane(SpanSolution& solution, NewtonBuffers& buffers) {
   }
   if (!solution.is_equilibrium()) return;
   solution.error = error_estimate(solution, eta);
-  if (solution.status != SolveStatus::converged) return;
+  if (solution.status != SolveStatus::converged || span.stays_in_plane()) return;
   if (!solution.model->resists_out_of_plane(*solution.at_x())) solution.finish(SolveStatus::saddle);
 }
 

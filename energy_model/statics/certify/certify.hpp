@@ -23,7 +23,8 @@ void certify(SpanSolution& solution, NewtonBuffers& buffers);
 
 /// Certifies a plain cantilever that Newton's method has just found, which has checked its step and
 /// its second variation in the plane. Only the sign of the second variation out of the plane is
-/// determined. A singular point, or a shape that may be at a fold, is passed to certify().
-void certify_out_of_plane(SpanSolution& solution, NewtonBuffers& buffers);
+/// determined, unless Span::stays_in_plane(). A singular point, or a shape that may be at a fold,
+/// is passed to certify().
+void certify_plain_cantilever(SpanSolution& solution, NewtonBuffers& buffers);
 
 }  // namespace dlo::energy_model

@@ -146,11 +146,12 @@ RigidBodyModes rigid_body_modes(const Span& span, const Eigen::Matrix3Xd& tangen
     for (Eigen::Index q = 0; q < tangents.cols(); ++q) shape.emplace_back(tangents.col(q));
   }
   const std::vector<Eigen::Vector3d> invariants = rotation_invariants(span);
-  if (!span.planar)
-    return {.in_plane = count_moving_rotations(invariant_axes(invariants, axes), shape)};
-  return {
-      .in_plane = count_moving_rotations(invariant_axes(invariants, axes.col(2)), shape),
-      .out_of_plane = count_moving_rotations(invariant_axes(invariants, axes.leftCols(2)), shape)};
+  const auto count = [&](const Eigen::MatrixXd& about) {
+    return count_moving_rotations(invariant_axes(invariants, about), shape);
+  };
+  if (!span.planar) return {.in_plane = count(axes)};
+  return {.in_plane = count(axes.col(2)),
+          .out_of_plane = span.stays_in_plane() ? 0 : count(axes.leftCols(2))};
 }
 
 bool is_rotated_copy(const Span& span, const Eigen::Matrix3Xd& a, const Eigen::Matrix3Xd& b) {

@@ -16,7 +16,8 @@ namespace dlo::energy_model {
 /// 0 for every prescribed position and direction v and for every force; obstacles are ignored.
 struct RigidBodyModes {
   Eigen::Index in_plane = 0;  ///< planar span: rotations about its normal; in space: all of them
-  Eigen::Index out_of_plane = 0;  ///< planar span: rotations about axes in its plane
+  /// Planar span: rotations about axes in its plane; 0 if Span::stays_in_plane().
+  Eigen::Index out_of_plane = 0;
 
   [[nodiscard]] Eigen::Index all() const { return in_plane + out_of_plane; }
 };

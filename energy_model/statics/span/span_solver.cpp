@@ -109,7 +109,7 @@ class Search {
   [[nodiscard]] std::vector<SpanSolution> run() {
     if (!options_.wants_all() && span_.is_plain_cantilever() && span_.has_unidirectional_load()) {
       SpanSolution solution = plain_cantilever(on_);
-      if (!span_.confined) certify_out_of_plane(solution, workspace_.newton());
+      certify_plain_cantilever(solution, workspace_.newton());
       if (solution.status != SolveStatus::saddle) return as_list(std::move(solution));
       (void)add(std::move(solution));
     }
