@@ -291,8 +291,7 @@ Vibrations resolved_vibrations(const Problem& problem, const Inertia& inertia,
                                const SpansAtRest& spans, const Equilibrium* known,
                                const VibrationOptions& options) {
   RodVibrations rod(problem, inertia, spans, known, options);
-  Vibrations result;
-  result.status = SolveStatus::failed;
+  Vibrations result{.status = SolveStatus::failed};
   int terms = std::max(16, options.count + 8);
   std::vector<double> last;
   const double neutral_square = zero_frequency_threshold * bending_unit(problem) /
@@ -342,23 +341,23 @@ Vibrations vibrations(const Problem& problem, const Inertia& inertia, const Equi
   require_energy_in_space(problem);
   check(problem, inertia, "vibrations");
   check_options(options);
-  Vibrations result;
-  result.status = SolveStatus::failed;
-  if (!known.sample) {
-    result.message = "there is no equilibrium to vibrate about: " + known.message;
-    return result;
-  }
-  if (!known.contacts.empty()) {
-    result.message = "the rod touches a rigid obstacle and would lift off while it vibrates";
+  Vibrations result{.status = SolveStatus::failed};
+  if (!known.sample || !known.contacts.empty()) {
+    result.message = known.sample
+                         ? "the rod touches a rigid obstacle and would lift off while it vibrates"
+                         : "there is no equilibrium to vibrate about: " + known.message;
     return result;
   }
   const Deadline deadline(options.time_limit);
-  return resolved_vibrations(
+  result = resolved_vibrations(
       problem, inertia,
       [&](int terms, SpanWorkspace& workspace) {
         return spans_in_space(problem, known, terms, deadline, workspace);
       },
       &known, options);
+  const bool late = result.status == SolveStatus::failed && deadline.passed();
+  if (late) result.status = SolveStatus::time_limit;
+  return result;
 }
 
 bool is_held_straight(const Problem& problem) {

@@ -132,7 +132,7 @@ class NewtonIteration {
     if (small && solution_.next_step <= largest_stagnation_step && !step_.is_borrowed()) {
       return Outcome::equilibrium;
     }
-    if (!is_own) {
+    if (!is_own || options_.deadline.passed()) {
       step_.discard_factor();
       return Outcome::continues;
     }

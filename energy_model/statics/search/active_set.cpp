@@ -125,7 +125,7 @@ SpanSolution ActiveSet::run(Span span, TangentField near, SpanSolution solution,
     for (Span::Contact& contact : span.contacts) contact.slides = true;
   }
   const std::string why = solution.is_equilibrium() ? "" : ": " + solution.message;
-  solution.finish(SolveStatus::not_verified);
+  solution.finish(options_.deadline.passed() ? SolveStatus::time_limit : SolveStatus::not_verified);
   solution.message += ": the contacts did not converge" + why;
   return solution;
 }

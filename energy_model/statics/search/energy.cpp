@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cstdint>
+#include <memory>
 #include <string>
 #include <utility>
 
@@ -149,11 +150,13 @@ class EnergySolver::State {
     if (result.empty()) result = solve_placed(problem, placed, mode, deadline);
     const double seconds =
         std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
-    for (Equilibrium& equilibrium : result) {
-      equilibrium.seconds = seconds;
-      if (!deadline.passed() || succeeded(equilibrium.status)) continue;
-      if (equilibrium.message.find("time limit") != std::string::npos) continue;
-      equilibrium.message += "; the search ended at its time limit";
+    for (Equilibrium& found : result) {
+      found.seconds = seconds;
+      if (!deadline.passed() || succeeded(found.status)) continue;
+      // With more time the search might have found an equilibrium.
+      if (found.status > SolveStatus::not_verified) found.status = SolveStatus::time_limit;
+      if (found.message.find("time limit") != std::string::npos) continue;
+      found.message += "; the search ended at its time limit";
     }
     return result;
   }
@@ -164,14 +167,8 @@ class EnergySolver::State {
   Equilibrium near(const Problem& problem, const Equilibrium& shape) {
     const Equilibrium* const given = std::exchange(options_.start, &shape);
     remembered_ = {};
-    try {
-      Equilibrium result = std::move(solve(problem, Mode::descend).front());
-      options_.start = given;
-      return result;
-    } catch (...) {
-      options_.start = given;
-      throw;
-    }
+    const std::shared_ptr<void> restore(nullptr, [&](void*) { options_.start = given; });
+    return std::move(solve(problem, Mode::descend).front());
   }
 
   [[nodiscard]] const SearchLog& log() const { return log_; }

@@ -390,7 +390,11 @@ std::vector<SpanSolution> solve_twisted(const PlacedSpan& placed, const Problem&
   if (!options.wants_all()) untwisted.resize(1);
   SpanSolution& best = untwisted.front();
   memory.untwisted.store(best, placed);
-  if (!succeeded(best.status)) return untwisted;
+  if (!succeeded(best.status)) {
+    // An equilibrium of the rod without twist is none of the twisted rod.
+    if (best.is_known()) best.fail("no stable shape without twist was found");
+    return as_list(std::move(best));
+  }
   const EndFrame frame = span.end_frame_for(best);
   const double turned = frame.twist - std::exchange(memory.turned, frame.twist);
   if (follows && std::abs(turned) < largest_followed_rotation) {
