@@ -210,6 +210,12 @@ TEST(SidesOfBodies, RefusesPointsThatAreNoShape) {
   EXPECT_THROW((void)energy_near(problem, {0, 0.5, 1}, 0 * points), std::invalid_argument);
 }
 
+TEST(SidesOfBodies, InThePlaneOfTheRodAreNeitherSideOfACylinderWithItsAxisThere) {
+  Problem problem = heavy_cantilever(40, 0);
+  problem.obstacles = {{Body::cylinder({0, -0.3, 0}, {1, 0, 0}, 0.05)}};
+  EXPECT_EQ(test::converged(solve_energy(problem)).other_side_starts, 0);
+}
+
 TEST(SidesOfBodies, DoNotDependOnPointsOfARefusedProblem) {
   const Problem problem = heavy_cantilever(5, 0);
   Problem refused = problem;

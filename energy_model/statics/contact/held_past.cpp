@@ -82,10 +82,10 @@ double half_size(const obstacle::Body& body, const Eigen::Vector3d& direction) {
 }
 
 /// Returns a unit direction normal to the path; the body may be passed on that side and on the
-/// opposite one. It is normal to the axis of an endless body. For other bodies it lies in the plane
-/// of a planar span, or in space in the plane of path and loads. It is arbitrary if the loads have
-/// no component across the path. Returns std::nullopt if the body is endless along the path or on
-/// two axes.
+/// opposite one. It lies in the plane of a planar span. In space it is normal to the axis of an
+/// endless body; for other bodies it lies in the plane of path and loads, or is arbitrary if the
+/// loads have no component across the path. Returns std::nullopt if the body is endless along the
+/// path, on an axis in the plane of a planar span, or on two axes.
 std::optional<Eigen::Vector3d> side_of_path(const Span& span, const obstacle::Body& body,
                                             const Eigen::Vector3d& along) {
   std::vector<Eigen::Vector3d> infinite_axes;
@@ -101,14 +101,15 @@ std::optional<Eigen::Vector3d> side_of_path(const Span& span, const obstacle::Bo
     if (!(side.norm() > rounding_length * (1 + pull.norm()))) side = along.unitOrthogonal();
   }
   if (!infinite_axes.empty()) side = infinite_axes.front().cross(along);
+  if (span.planar) side.z() = 0;
   if (!(side.norm() > rounding_length)) return std::nullopt;
   return side.normalized();
 }
 
 /// Returns the points of a path that passes a body on one side. The first point is next to the
 /// middle of the body. If the rod ends free, a second point follows at the far corner of the body,
-/// from where the rod hangs clear of it. Returns std::nullopt if the path has no direction, or if
-/// the body is endless along the path or on two axes.
+/// from where the rod hangs clear of it. Returns std::nullopt if the path has no direction, or
+/// side_of_path() no side.
 /// @param from  last point of the path before the body
 /// @param sense  1 to pass on the side of side_of_path(), -1 to pass on the opposite side
 std::optional<PathPoints> path_past_body(const Span& span, const obstacle::Body& body,
