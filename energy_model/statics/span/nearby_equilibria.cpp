@@ -90,13 +90,13 @@ SpanSolution from_given_start(LocalSolver& on) {
   solution.followed = is_followed(solution, start);
   if (succeeded(solution.status) && (solution.followed || !start.known.model)) return solution;
   if (on.options().only_follows()) return solution;
-  const int spent = solution.evaluations;
   const bool from_newton = solution.followed;
   std::optional<SpanSolution> other = start_on_adapted_mesh(on);
   if (!other) {
     other = descends ? on.newton_from(start.field) : on.from_start(Start{start.field});
   }
-  other->evaluations += spent;
+  if (solution.is_equilibrium() && !other->is_equilibrium()) std::swap(solution, *other);
+  other->evaluations += solution.evaluations;
   other->followed = from_newton;
   return std::move(*other);
 }
