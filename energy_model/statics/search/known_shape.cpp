@@ -39,7 +39,8 @@ Equilibrium shape_through(const std::vector<double>& arc_lengths,
     chords.emplace_back(chord.normalized());
     last = i;
   }
-  require(!chords.empty(), function, "points", points(0, 0), "not all the same");
+  require(!chords.empty(), function, "points", points(0, 0),
+          "different from the first at the last arc length, or at one >= 1/64 of the length away");
   Equilibrium shape;
   shape.sample = [s = Eigen::VectorXd(Eigen::Map<Eigen::VectorXd>(
                       middles.data(), static_cast<Eigen::Index>(middles.size()))),
