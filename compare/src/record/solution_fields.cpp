@@ -24,10 +24,12 @@ Json grippers_json(const SolvedShape& shape) {
   return grippers;
 }
 
-/// Returns the sum over Solution::linking, which lacks the intervals whose turns are undetermined;
-/// NaN if it is empty.
+/// Returns the sum over Solution::linking; NaN if that is empty or lacks an interval, whose turns
+/// are then undetermined.
 double turns(const SolvedShape& shape, double Linking::*of_part) {
-  if (shape.solution.linking.empty()) return std::numeric_limits<double>::quiet_NaN();
+  const std::size_t found = shape.solution.linking.size();
+  if (found == 0 || found < shape.solution.twists.size())
+    return std::numeric_limits<double>::quiet_NaN();
   double sum = 0;
   for (const Linking& part : shape.solution.linking) sum += part.*of_part;
   return sum;

@@ -63,6 +63,15 @@ TEST_F(Record, AShapeWithoutFramesHasNoTurns) {
             "row,gamma,tip_x_m,tip_y_m,tip_z_m,energy_J,evaluations,terms,statu");
 }
 
+TEST_F(Record, TurnsOfAPartThatAreUndeterminedHaveNoSum) {
+  Solution solution;
+  solution.twists.resize(2);
+  solution.linking = {{.end = 1, .twist = 0.5}};
+  for (const Field<SolvedShape>& field : shape_numbers()) {
+    EXPECT_TRUE(std::isnan(value_of(field, {Scene(), solution}).get<double>())) << field.name;
+  }
+}
+
 /// Field of the mean tension, which no other output contains.
 const Field<SolvedShape> mean_tension[] = {
     {"mean_tension", "N", "Mean of the tension along the rod", [](const SolvedShape& shape) {
