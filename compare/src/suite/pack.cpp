@@ -34,10 +34,14 @@ double rounded(double value, double large) {
   return as_number<double>(fmt::format("{:.10g}", value)).value();
 }
 
-/// Rounds a bound to two digits. @param rounding  rounding error of the written values, which the
-/// bound includes
+/// Rounds a bound up to two digits. @param rounding  rounding error of the written values, which
+/// the bound includes
 double bound(double value, double rounding) {
-  return as_number<double>(fmt::format("{:.1e}", value + rounding)).value();
+  const double all = value + rounding;
+  const auto two_digits = [](double x) { return *as_number<double>(fmt::format("{:.1e}", x)); };
+  const double nearest = two_digits(all);
+  if (!(nearest < all)) return nearest;
+  return two_digits(nearest + std::pow(10, std::floor(std::log10(nearest)) - 1));
 }
 
 /// Returns the bound of a number, or of a vector, including the rounding to ten digits.
