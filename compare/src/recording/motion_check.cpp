@@ -173,13 +173,19 @@ class CauseSearch {
       : check_(check), models_(models), recorded_(recorded), least_(check.errors.rms_m) {
     const std::optional<TimeSpan> motion = motion_time_span(check.scene);
     // A rod that rests before the first pose has rested before; the past of a moving rod is not
-    // known.
-    if (motion && motion->begin < *models.options.from) earliest_ = *models.options.from;
+    // known, nor that of a rod with a given start.
+    if (check.scene.start || (motion && motion->begin < *models.options.from))
+      earliest_ = *models.options.from;
   }
 
-  /// Returns the lag of the recording relative to the judged model; std::nullopt as best_lag().
-  [[nodiscard]] std::optional<MotionShift> lag() const {
-    return best_lag(recorded_, *models_.of(check_.model), earliest_, Displacement::none);
+  /// Returns the lag of the recording relative to a model; std::nullopt as best_lag(), or if the
+  /// lag does not explain the deviation of the points from which it is computed.
+  [[nodiscard]] std::optional<MotionShift> lag(
+      const ModelMotion& model, Displacement displacement = Displacement::none) const {
+    const auto best = best_lag(recorded_, model, earliest_, displacement);
+    const bool explains =
+        best && best->rms_m <= cause_limits::recording_left * best->unshifted_rms_m;
+    return explains ? best : std::nullopt;
   }
 
   [[nodiscard]] std::vector<MotionCause> run(const std::optional<MotionShift>& lag) {
@@ -193,12 +199,12 @@ class CauseSearch {
     if (unlike) add(MotionCause::Kind::model, what, rms_of(motion_residuals(recorded_, *unlike)));
     if (lag) add(MotionCause::Kind::lag, lag_words(*lag), lag->rms_m);
     if (unlike) {
-      const auto late = best_lag(recorded_, *unlike, earliest_, Displacement::none);
+      const auto late = this->lag(*unlike);
       if (late) add(MotionCause::Kind::model, what + ", and " + lag_words(*late), late->rms_m);
     }
     const MotionShift offset = best_offset(recorded_, judged);
     add(MotionCause::Kind::offset, offset_words(offset), offset.rms_m);
-    if (const auto both = best_lag(recorded_, judged, earliest_, Displacement::constant)) {
+    if (const auto both = this->lag(judged, Displacement::constant)) {
       add(MotionCause::Kind::offset, offset_words(*both) + ", and " + lag_words(*both),
           both->rms_m);
     }
@@ -334,7 +340,7 @@ MotionCheck check_motion(const Scene& scene, const MarkerMotion& recorded,
   const ModelMotion& judged = *models.of(check.model);
   if (check.errors.rms_m > cause_limits::no_recording_error * scene.length) {
     CauseSearch search(check, models, recorded);
-    const std::optional<MotionShift> lag = search.lag();
+    const std::optional<MotionShift> lag = search.lag(judged);
     if (lag && lag->rms_m <= cause_limits::recording_left * check.errors.rms_m) {
       check.lag = lag->lag;
       check.lag_rms_m = lag->rms_m;

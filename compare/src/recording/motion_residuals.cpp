@@ -142,7 +142,9 @@ std::optional<MotionShift> best_lag(const MarkerMotion& recorded, const ModelMot
   const Scan scanned = scan(residual, low, range, lag_steps);
   if (!scanned.is_bracketed()) return std::nullopt;
   const double lag = minimum_near(residual, scanned, 1e-6 * range).x;
-  return make_shift(motion_residuals(usable, model, lag), lag, displacement);
+  MotionShift best = make_shift(motion_residuals(usable, model, lag), lag, displacement);
+  best.unshifted_rms_m = rms_of(motion_residuals(usable, model));
+  return best;
 }
 
 Eigen::Matrix3Xd motion_residuals(const MarkerMotion& recorded, const ModelMotion& model,

@@ -90,7 +90,8 @@ enum class Displacement { none, constant };
 struct MotionShift {
   double lag = 0;                                    ///< delay of the recording [s]
   Eigen::Vector3d offset = Eigen::Vector3d::Zero();  ///< displacement of the recording [m]
-  double rms_m = 0;  ///< remaining RMS distance of the points that were used [m]
+  double rms_m = 0;            ///< remaining RMS distance of the points that were used [m]
+  double unshifted_rms_m = 0;  ///< RMS distance of the same points without lag and offset [m]
 };
 
 /// Describes a lag: "it is 30 ms late".

@@ -106,6 +106,17 @@ TEST(MotionCheck, FindsTheLagOfARecording) {
   }
 }
 
+// The lag is computed without the early points, whose past is unknown after --from.
+TEST(MotionCheck, FindsNoLagThatOnlyOmitsWrongPoints) {
+  const Scene scene = swung_rod();
+  std::vector<double> times;
+  for (int k = 0; k <= 20; ++k) times.push_back(0.2 + 0.03 * k);
+  MarkerMotion motion = at_rest(scene, times, marker_positions);
+  for (MarkerPosition& at : motion.positions) at.position.x() += at.time < 0.3 ? 0.02 : 0;
+  for (MarkerPosition& at : motion.positions) at.position.z() += 1e-4 * std::sin(99 * at.time);
+  EXPECT_TRUE(std::isnan(check_motion(scene, motion, {.from = 0.2}).lag));
+}
+
 TEST(MotionCheck, FindsWhereARecordingIsDisplaced) {
   const Scene scene = swung_rod();
   MarkerMotion motion = at_rest(scene, uneven_times(0.8, 20), marker_positions);
