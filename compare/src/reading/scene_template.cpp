@@ -192,11 +192,10 @@ toml::array scaled_gravity(const Scene& scene, const std::string& gamma) {
 }  // namespace
 
 struct SceneTemplate::Parsed {
-  toml::table root;
-  std::string name;
+  SceneSource source;
   std::vector<Material> materials;
   MissingElements missing;
-  std::filesystem::path folder;  // folder of the files that fields name; empty if `name` has it
+  std::filesystem::path folder;  // folder of the files that fields name; empty if the source has it
   // EI, or the mean to which GJ is proportional, with the values of the file. Empty if GJ is not
   // given, or if the file is not a valid scene without other values.
   std::optional<double> bending_stiffness;
@@ -205,12 +204,10 @@ struct SceneTemplate::Parsed {
 SceneTemplate::SceneTemplate(const std::string& text, const std::string& name,
                              std::vector<Material> known_materials, MissingElements missing,
                              const std::string& folder) {
-  SceneSource source = parse_scene_source(text, name);
-  const auto parsed =
-      std::make_shared<Parsed>(Parsed{std::move(source.root), std::move(source.where),
-                                      std::move(known_materials), missing, folder, std::nullopt});
+  const auto parsed = std::make_shared<Parsed>(Parsed{
+      parse_scene_source(text, name), std::move(known_materials), missing, folder, std::nullopt});
   parsed_ = parsed;
-  if (!parsed->root["rod"]["torsional_stiffness"]) return;
+  if (!parsed->source.root["rod"]["torsional_stiffness"]) return;
   try {
     parsed->bending_stiffness = with({}).mean_bending_stiffness();
   } catch (const InputError&) {  // The scene is valid only with other values.
@@ -219,8 +216,9 @@ SceneTemplate::SceneTemplate(const std::string& text, const std::string& name,
 }
 
 Scene SceneTemplate::with(const std::vector<SceneField>& values) const {
-  toml::table root = parsed_->root;
-  const Overrider overrider(root, parsed_->name, parsed_->materials, parsed_->missing);
+  SceneSource source = parsed_->source;
+  toml::table& root = source.root;
+  const Overrider overrider(root, source.where, parsed_->materials, parsed_->missing);
   const SceneField* gamma = nullptr;
   for (const SceneField& value : values) {
     if (value.field == "gamma") {
@@ -230,10 +228,10 @@ Scene SceneTemplate::with(const std::vector<SceneField>& values) const {
     }
   }
   for (std::string* const file : file_names(root)) *file = (parsed_->folder / *file).string();
-  Scene scene = read_scene(root, parsed_->name, parsed_->materials);
+  Scene scene = read_scene(source, parsed_->materials);
   if (gamma != nullptr) {
     root.insert_or_assign("gravity", scaled_gravity(scene, gamma->value.text()));
-    scene = read_scene(root, parsed_->name, parsed_->materials);
+    scene = read_scene(source, parsed_->materials);
   }
   const bool gives_torsion = std::ranges::any_of(
       values, [](const SceneField& value) { return value.field == "rod.torsional_stiffness"; });

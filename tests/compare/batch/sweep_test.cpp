@@ -94,6 +94,10 @@ TEST(SceneTemplate, GivesTheSceneThatAnEditedFileWouldGive) {
   EXPECT_EQ(scene.force_model.points, 24);
   EXPECT_EQ(scene.force_model.law, BendingLaw::paper);
   EXPECT_EQ(scene.gamma(), expected.gamma());
+  const std::string mjcf = DLO_DATA "/mujoco/composite.xml";
+  const Scene cable = load_scene_template(mjcf).with({{"rod.length", "2"}});
+  EXPECT_EQ(cable.file, "composite.xml");
+  EXPECT_EQ(cable.model->segments, load_scene(mjcf).model->segments);
 }
 
 TEST(SceneTemplate, SetsVectorsTheirElementsAndPartsOfAMaterial) {
