@@ -76,6 +76,7 @@ Values optional_values(const SceneChoices& choices, const Scene& scene) {
   const double l = scene.length;
   const double lowest =
       l * std::min(0.0, (*scene.grippers.front().direction)[is_z_up(choices) ? 2 : 1]);
+  const double floor = 0.7 * lowest - std::max(0.1 * l, scene.diameter);
   const double weight = scene.mass() * scene.gravity.norm();
   const double force = weight > 0 ? weight : scene.bending_stiffness() / (l * l);
   const auto number = [](double value) { return fmt::format("{:.4g}", value); };
@@ -85,7 +86,7 @@ Values optional_values(const SceneChoices& choices, const Scene& scene) {
                 {"section.mass_per_length", number(2 * scene.mass_per_length())},
                 {"load.at", number(l / 2)},
                 {"load.force", upward_vector(choices, -0.1 * force)},
-                {"obstacle.point", upward_vector(choices, 0.7 * lowest - 0.1 * l)},
+                {"obstacle.point", upward_vector(choices, floor)},
                 {"obstacle.normal", upward_vector(choices, 1)},
                 {"obstacle.stiffness", number(1e3 * force / (l * l))},
                 {"obstacle.friction", "0.3"},

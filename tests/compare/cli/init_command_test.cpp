@@ -141,7 +141,8 @@ TEST(SceneText, IsValidWithAnyAndAllOptionalPartsAndSolves) {
         .youngs_modulus = "1 GPa",
         .density = "1500 kg/m^3",
         .direction = "[1, 1, 1]"},
-        SceneChoices{.youngs_modulus = "1 GPa", .density = "0", .direction = "-90 deg"}}) {
+        SceneChoices{.youngs_modulus = "1 GPa", .density = "0", .direction = "-90 deg"},
+        SceneChoices{.length = "1 m", .diameter = "0.3 m"}}) {
     const std::string text = scene_text(choices);
     const std::vector<std::string> paragraphs = optional_paragraphs(text);
     ASSERT_EQ(paragraphs.size(), 6U);
