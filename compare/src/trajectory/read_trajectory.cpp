@@ -92,7 +92,11 @@ std::string read_referenced_file(const StrictTable& table, std::string_view key,
         key, fmt::format("{} {}", is_file ? "not a regular file" : "no such file beside the scene",
                          allowed));
   }
-  return read_file(path);
+  try {
+    return read_file(path);
+  } catch (const InputError& error) {
+    table.fail(key, error.what());
+  }
 }
 
 NumberColumns::NumberColumns(const CsvRow& header, std::vector<std::string_view> names,
@@ -186,14 +190,12 @@ Trajectory read_trajectory(StrictTable& table, const PoseKeys& keys,
   std::optional<double> cutoff;
   table.read("cutoff", cutoff);
   if (!name) return rows.empty() ? Trajectory() : read_rows(table, rows, keys);
+  const std::string text =
+      read_referenced_file(table, "trajectory", path_beside(*name, scene_file), file_allowed);
   Trajectory trajectory;
   try {
-    const std::string text =
-        read_referenced_file(table, "trajectory", path_beside(*name, scene_file), file_allowed);
     trajectory = Trajectory(file_poses(text, *name, keys, cutoff));
   } catch (const InputError& error) {
-    // The table's own errors name the position already.
-    if (std::string_view(error.what()).starts_with(scene_file)) throw;
     table.fail("trajectory", error.what());
   } catch (const std::invalid_argument& error) {
     table.fail(cutoff ? "cutoff" : "trajectory", problem_of_pose(error));

@@ -63,6 +63,10 @@ TEST(MovingScene, ReadsPosesFromAFileBesideIt) {
   EXPECT_TRUE(has_all(error_of<InputError>([&] { return parse_scene(text, folder + "my.toml"); }),
                       {"my.toml:8: gripper.trajectory = 'way.csv': way.csv:2: "
                        "z = \"nowhere\""}));
+  // The scene's name may begin the name of the other file.
+  const std::string absolute = replaced(text, "way.csv", folder + "way.csv");
+  EXPECT_TRUE(has_all(error_of<InputError>([&] { return parse_scene(absolute, folder + "way"); }),
+                      {"way:8: gripper.trajectory"}));
 }
 
 TEST(MovingScene, SaysWhatIsWrongWithAPose) {
