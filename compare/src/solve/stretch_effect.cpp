@@ -16,10 +16,11 @@
 namespace dlo::compare {
 namespace {
 
-/// Returns an upper bound of the force in any cross-section of a rod without drag [N]: half the sum
-/// of all forces, since the forces on both sides of a section balance.
+/// Returns an upper bound of the force in any cross-section [N]: half the sum of all forces, since
+/// the forces on both sides of a section balance.
 double largest_force_bound(const Scene& scene, const energy_model::Equilibrium& rod) {
   double all = scene.weight_per_length().norm() * scene.length + scene.total_load_magnitude();
+  if (scene.drag) all += scene.drag->largest() * scene.length;
   for (const energy_model::Reaction& grip : rod.grips) all += grip.force.norm();
   for (const Eigen::Vector3d& force : rod.obstacles) all += force.norm();
   return all / 2;

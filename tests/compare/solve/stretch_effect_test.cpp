@@ -120,6 +120,16 @@ TEST(StretchEffect, IsToldByTheShapeThatALongerRodHasWhereItLies) {
   EXPECT_TRUE(neglects(hangs, "stretch"));
 }
 
+/// The strain v^2 tangential l / EA is 0.7 of the target.
+TEST(StretchEffect, OfDragIsEstimatedFromHalfTheTarget) {
+  Scene scene = line(1e4, 98);
+  scene.length = 1;
+  scene.gravity.setZero();
+  scene.grippers = {{.at = 0, .direction = Vector3d::UnitX()}};
+  scene.drag = energy_model::Drag{.velocity = {1, 0, 0}, .normal = 14, .tangential = 7};
+  EXPECT_NEAR(solve(scene, Model::exact, {.target = 1e-3}).stretch.strain, 7e-4, 1e-9);
+}
+
 TEST(StretchEffect, IsSilentWhereItDoesNotMatter) {
   EXPECT_FALSE(neglects(solve(line(4e9, 98), Model::energy), "stretch"));
   Scene unknown = line(4e5, 98);
