@@ -169,9 +169,18 @@ void check_rolls(const Scene& scene, const std::vector<StrictTable>& entries) {
   if (!scene.prescribes_twist()) return;
   if (scene.has_material_directors()) (void)scene.first_frame();
   const energy_model::Problem problem = scene_problem(scene);
+  const bool has_d1 = std::ranges::any_of(
+      problem.grips, [](const auto& grip) { return grip.frame && grip.frame->d1; });
   for (std::size_t i = 0; i < entries.size(); ++i) {
     const energy_model::Grip& grip = problem.grips[i];
     if (!grip.frame || grip.frame->d1) continue;
+    const bool is_first = std::ranges::none_of(
+        problem.grips, [&](const auto& other) { return other.frame && other.at < grip.at; });
+    if (is_first && has_d1 && !scene.has_material_directors()) {
+      entries[i].fail("roll",
+                      "has no defined zero: a later clamp has a frame (allowed: frame or "
+                      "quaternion)");
+    }
     try {
       (void)energy_model::held_d1(problem, grip);
     } catch (const std::invalid_argument&) {

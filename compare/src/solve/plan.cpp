@@ -51,14 +51,14 @@ std::vector<PlannedSpan> spans_of(const Scene& scene) {
 }
 
 /// Returns the parts between neighbouring clamps that hold frames. Their turn is the difference of
-/// the rolls; NaN if both clamps have a d1.
+/// the rolls; NaN if a clamp other than the first one has a d1.
 std::vector<PlannedTwist> twists_of(const Scene& scene) {
   std::vector<PlannedTwist> twists;
   const std::vector<std::size_t> framed = framed_grippers(scene);
   for (std::size_t k = 1; k < framed.size(); ++k) {
     const Gripper& before = scene.grippers[framed[k - 1]];
     const Gripper& after = scene.grippers[framed[k]];
-    const bool by_directors = before.frame->d1 && after.frame->d1;
+    const bool by_directors = after.frame->d1 || (k > 1 && before.frame->d1);
     twists.push_back({.begin = before.at,
                       .end = after.at,
                       .turn = by_directors ? std::numeric_limits<double>::quiet_NaN()
@@ -78,8 +78,8 @@ std::optional<energy_model::Equilibrium> rod_shape(const Scene& scene, double ti
     return solve_reference(scene, Model::energy, options);
   } catch (const ConvergenceError&) {
     why = "the energy model did not converge";
-  } catch (const InputError&) {
-    why = "the energy model needs slack between grips";
+  } catch (const InputError& error) {
+    why = error.what();
   }
   return std::nullopt;
 }

@@ -36,12 +36,13 @@ std::string gripper(double at, const std::string& more, const std::string& hold 
   return text + more;
 }
 
+const std::string framed_clamp = gripper(0, "quaternion = [0.5, 0.5, 0.5, 0.5]\n");
+
 Scene read(const std::string& text) { return parse_scene(text, "my.toml"); }
 
 /// Returns the frame of the second of two clamps along x.
 FrameHold frame_of(const std::string& keys) {
-  const Scene scene =
-      read(rod + gripper(0, "direction = 0\nroll = 0\n") + gripper(0.5, keys + "\n"));
+  const Scene scene = read(rod + framed_clamp + gripper(0.5, keys + "\n"));
   EXPECT_TRUE(scene.prescribes_twist());
   return scene.grippers.at(1).frame.value();
 }
@@ -55,8 +56,8 @@ TEST(Frames, ARollIsAnAngleOfAnySize) {
 }
 
 TEST(Frames, DirectorsAreRowsAndGiveTheDirection) {
-  const std::string text = rod + gripper(0, "direction = 0\nroll = 0\n") +
-                           gripper(0.5, "frame = [[0, 0, 1], [1, 0, 0], [0, 1, 0]]\n");
+  const std::string text =
+      rod + framed_clamp + gripper(0.5, "frame = [[0, 0, 1], [1, 0, 0], [0, 1, 0]]\n");
   const Gripper clamp = read(text).grippers.at(1);
   EXPECT_EQ(*clamp.direction, Vector3d::UnitY());
   EXPECT_EQ(*clamp.frame->d1, Vector3d::UnitZ());
@@ -68,7 +69,7 @@ TEST(Frames, DirectorsAreRowsAndGiveTheDirection) {
 TEST(Frames, AQuaternionTurnsTheAxesIntoTheDirectors) {
   const Eigen::Quaterniond q = Eigen::Quaterniond(0.3, -0.2, 0.7, 0.5).normalized();
   const std::string text =
-      rod + gripper(0, "direction = 0\nroll = 0\n") +
+      rod + framed_clamp +
       gripper(0.5, "quaternion = [" + std::to_string(q.w()) + ", " + std::to_string(q.x()) + ", " +
                        std::to_string(q.y()) + ", " + std::to_string(q.z()) + "]\nturns = 1\n");
   const Gripper clamp = read(text).grippers.at(1);  // its numbers have six decimals
@@ -134,6 +135,8 @@ TEST(Frames, ErrorsNameFileLineKeyAndWhatIsAllowed) {
        {"my.toml:1: rod.torsional_stiffness: missing", "two clamps", "> 0", "0.00793 N m^2"}},
       {rod + first + gripper(0.5, "direction = \"180 deg\"\nroll = 1\n"),
        {"gripper.roll = 1", "opposite", "frame or quaternion"}},
+      {rod + first + gripper(0.5, directors),
+       {"my.toml:11: gripper.roll = 0", "a later clamp", "frame or quaternion"}},
   };
   for (const BadFrame& bad : cases) {
     const std::string text = error_of<InputError>([&] { return read(bad.text); });

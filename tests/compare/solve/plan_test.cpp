@@ -268,6 +268,14 @@ TEST(Plan, SaysWhatGrippersTwistAndThatNoPolygonAnswersForIt) {
   EXPECT_TRUE(std::isinf(plan.bound("polygon")));
   EXPECT_EQ(plan.neglected[4].name, "twist");
   EXPECT_EQ(plan.neglected[4].models, "chain, force (law paper only)");
+  scene.grippers[1].frame->d1 = Vector3d::UnitY();
+  EXPECT_TRUE(std::isnan(make_plan(scene).twist.front().turn));
+}
+
+TEST(Plan, StatesWhyTheEnergyModelRefusesAScene) {
+  Scene scene = heavy_scene(1, 0);
+  scene.drag = energy_model::Drag{.velocity = {0, 1, 0}, .normal = 1};
+  EXPECT_NE(make_plan(scene).neglected.front().why.find("medium.velocity"), std::string::npos);
 }
 
 TEST(Plan, NoBoundIsGivenWhereTheRodTouches) {
