@@ -114,28 +114,22 @@ std::optional<std::vector<double>> MjcfNode::numbers(const char* attribute, std:
                                                      std::size_t most) const {
   const std::optional<std::string> given = text(attribute);
   if (!given) return std::nullopt;
-  constexpr const char* blanks = " \t\r\n";
-  std::vector<double> values;
   const auto refuse = [&](const std::string& problem) {
     const std::string count =
         least == most ? fmt::format("{}", least) : fmt::format("{} to {}", least, most);
     fail(attribute, fmt::format("{} (allowed: {} number{} within {:g})", problem, count,
                                 most == 1 ? "" : "s", largest_number));
   };
-  std::string_view rest = *given;
-  while (true) {
-    rest.remove_prefix(std::min(rest.find_first_not_of(blanks), rest.size()));
-    if (rest.empty()) break;
-    const std::string_view word = rest.substr(0, rest.find_first_of(blanks));
+  std::vector<double> values;
+  for (const std::string& word : split_words(*given)) {
     const std::optional<double> value = shape_number(word);
     // The negated condition also rejects NaN.
     if (!value || !(std::abs(*value) <= largest_number)) {
       refuse(fmt::format("{} is not a number, or out of range", quoted_piece(word)));
     }
     values.push_back(*value);
-    if (values.size() > most) refuse("too many numbers");
-    rest.remove_prefix(word.size());
   }
+  if (values.size() > most) refuse("too many numbers");
   if (values.size() < least) refuse("too few numbers");
   return values;
 }

@@ -24,21 +24,10 @@ Type type_of(const MjcfNode& node) {
                                     "hfield", "mesh", "sdf"})];
 }
 
+/// Returns the number of half-sizes that define a geom.
 std::size_t sizes_of(Type type) {
-  switch (type) {
-    case Type::sphere:
-      return 1;
-    case Type::capsule:
-    case Type::cylinder:
-      return 2;
-    case Type::box:
-    case Type::ellipsoid:
-      return 3;
-    case Type::plane:
-    case Type::other:
-      break;
-  }
-  return 0;
+  constexpr std::size_t sizes[] = {0, 1, 2, 3, 2, 3, 0};  // in the order of MjcfGeom::Type
+  return sizes[static_cast<std::size_t>(type)];
 }
 
 /// Reads half-sizes; the last `given` of them are optional, because fromto determines them.

@@ -104,8 +104,7 @@ class GripperFinder {
 
   [[nodiscard]] AttachmentPoint body(const MjcfNode& constraint, const char* attribute) const {
     const std::string_view name = constraint.element.attribute(attribute).value();
-    if (name.empty() && attribute == std::string_view("body2")) return {};
-    if (name == "world") return {};
+    if (name == "world" || (name.empty() && attribute == std::string_view("body2"))) return {};
     for (std::size_t i = 1; i < world_.bodies.size() && !name.empty(); ++i) {
       if (world_.bodies[i].name == name) return {i, MjcfPose::Identity()};
     }

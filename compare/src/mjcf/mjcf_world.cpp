@@ -24,8 +24,7 @@ class WorldReader {
   }
 
   [[nodiscard]] MjcfWorld read() {
-    std::vector<pugi::xml_node> worlds;
-    for (const pugi::xml_node& node : xml_.root().children("worldbody")) worlds.push_back(node);
+    const auto worlds = xml_.root().children("worldbody");
     if (worlds.empty()) xml_.fail(xml_.root(), "has no <worldbody> (allowed: one, with a cable)");
     for (const pugi::xml_node& node : worlds) {
       read_children(node, {0, MjcfPose::Identity(), ""});
