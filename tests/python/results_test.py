@@ -204,7 +204,7 @@ def test_a_shape_may_be_the_name_of_a_file_and_one_needs_no_list(root, cable, co
     pair = (points, numpy.linspace(0.1, 1, len(points)))
     for one, listed in ((shape, [points]), (points, [points]), (points.tolist(), [shape]), (pair, [pair])):
         assert len({dlo.calibrate(scene, shapes, time_limit=1000).youngs_modulus for shapes in (one, listed)}) == 1
-    assert len(dlo.calibrate(scene, (points, points + 1e-4))["shapes"]) == 2
+    assert len(dlo.calibrate(scene, (points, points + 1e-4), time_limit=1000)["shapes"]) == 2
     # A fit whose alternatives take too long has no result: these widen the interval.
     for limit in (0.01, 0.04, 0.16, 0.64, 2.56):
         with contextlib.suppress(dlo.ConvergenceError):

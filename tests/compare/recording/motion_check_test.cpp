@@ -140,7 +140,7 @@ TEST(MotionCheck, SaysThatInertiaIsMissing) {
   const Scene scene = swung_rod();
   const MotionCheck check =
       check_motion(scene, at_rest(scene, uneven_times(0.8, 40), marker_positions),
-                   {.model = MotionModel::with_inertia});
+                   {.model = MotionModel::with_inertia, .solve = {.time_limit = 1000}});
   EXPECT_FALSE(check.passes);
   ASSERT_EQ(check.causes.size(), 1U);
   EXPECT_EQ(check.causes.front().words, "it is quasi-static: its inertia is missing");
