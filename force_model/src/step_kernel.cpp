@@ -28,8 +28,8 @@
 namespace dlo::force_model::DLO_KERNEL {
 namespace {
 
-/// cos(hooke_fold_angle). Joints that are folded further, and joints next to segments so short that
-/// a b is below `zero_area` [m^2], are left to the plain implementation.
+/// cos(hooke_fold_angle), and limit of a b (c - fold_cosine) [m^2]. The plain implementation
+/// computes all forces of a rod with a joint below it (folded further, or next to a short segment).
 constexpr double fold_cosine = -0.98999249660044546;
 constexpr double zero_area = 1e-60;
 

@@ -46,7 +46,7 @@ double fastest_inner_mode(const Rod& rod, const Points& points) {
   return contraction + bending;
 }
 
-/// Returns the EI of a Hookean rod with the same deflection under these loads.
+/// Returns the softest joint's EI; law paper: M L / alpha at the loads' moment M, 0 without loads.
 double equivalent_rigidity(const Rod& rod) {
   const bool is_uniform = rod.bending.stiffnesses.size() == 0;
   const double stiffness =

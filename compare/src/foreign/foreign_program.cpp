@@ -46,8 +46,8 @@ class ProgramFolder {
  public:
   [[nodiscard]] std::string file(const char* name) const { return folder_.path() / name; }
 
-  /// Returns the file named `shape`, or the only one whose name begins with "shape."; empty if
-  /// there is none or several. @throws InputError if the program has removed the folder
+  /// Returns the file named `shape`, else the only one whose name begins with "shape."; empty if
+  /// there is none or several. @throws InputError if the folder cannot be read (it was removed)
   [[nodiscard]] std::string shape_file() const {
     namespace fs = std::filesystem;
     std::error_code error;

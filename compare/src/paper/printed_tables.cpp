@@ -50,7 +50,7 @@ double printed_contraction_stiffness() { return printed("table_5", "c_c_used"); 
 
 namespace {
 
-/// Collects the recomputed rows of one table.
+/// Reads printed values of one table, and compares computed values with them, row by row.
 class PrintedTable {
  public:
   explicit PrintedTable(std::string name) : name_(std::move(name)) {}

@@ -22,9 +22,9 @@ struct PointForces {
   Eigen::Matrix3Xd loads;  ///< all forces of the scene except weight and drag
 };
 
-/// Returns the forces on points along a whole rod. Weight and distributed loads act on the point
-/// that is nearest along the rod, a load between two points by the lever rule on both.
-/// @param s  arc lengths of the points, growing [m]
+/// Returns the forces on points along a whole rod none of whose loads follows it. Weight and
+/// distributed loads act on the point that is nearest along the rod, a load between two points by
+/// the lever rule on both. @param s  arc lengths of the points, growing, two or more [m]
 [[nodiscard]] PointForces forces_on_points(const Scene& scene, const std::vector<double>& s);
 
 /// Returns the drag on the points of a polygon in its current shape [N], 3 x points. The drag on

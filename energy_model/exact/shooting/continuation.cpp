@@ -123,8 +123,8 @@ class Continuation {
       node.r += part * (node.r - before[i].r);
       node.m += part * (node.m - before[i].m);
       node.n += part * (node.n - before[i].n);
-      // The frame rotates about the tangent by many times the angle of the tangents, so that it is
-      // extrapolated on a circle.
+      // If clamps twist the rod, the frame may rotate about the tangent by many times the angle of
+      // the tangents, so that it is extrapolated on a circle.
       const Eigen::Vector3d t = node.t();
       const Eigen::Matrix3d old = transported(before[i].R, t);
       const double turn = std::atan2(old.col(1).dot(node.R.col(0)), old.col(0).dot(node.R.col(0)));

@@ -81,10 +81,10 @@ inline constexpr const char* no_equilibrium_of_class =
 /// Returns a list of one solution. A braced list would copy it.
 [[nodiscard]] std::vector<SpanSolution> as_list(SpanSolution solution);
 
-/// Whether two equilibria of one span have the same energy and, up to rigid-body motion in space,
-/// the same points at three arc lengths.
-/// @param tolerance  largest difference of points, divided by the span's length; the default is for
-///   converged shapes
+/// Whether two equilibria of one span have the same energy and the same points at three arc
+/// lengths; in space, without material directors, also up to a rotation (is_rotated_copy()).
+/// @param tolerance  norm of the three points' differences, divided by the span's length; that of
+///   energies is 0.01 tolerance (1 + load). The default is for converged shapes
 [[nodiscard]] bool is_same_shape(const SpanSolution& a, const SpanSolution& b,
                                  double tolerance = 1e-6);
 

@@ -118,13 +118,13 @@ class EnergySolver {
 
   /// Solves as solve_energy() does.
   Equilibrium solve(const Problem& problem);
-  /// Solves from the shape of the previous call instead of a search, for a gripper or an obstacle
-  /// that has moved a little. It searches if that shape was neither stable nor at a singular point,
-  /// or is that of shape_without_search(). It uses Newton's method with contacts, which are updated
-  /// as they change. The branch has ended if Newton's method finds no equilibrium near the last
-  /// shape, or an unstable one. The returned shape is then the next minimum downhill of the last
-  /// shape, or failing that the result of solve(). The problem must have the same obstacles in the
-  /// same order.
+  /// Solves from the shape of the previous call, for a gripper or an obstacle that has moved a
+  /// little, by Newton's method with contacts that are updated. It acts as solve() if there is no
+  /// such shape, if that was neither stable nor at a singular point, or shape_without_search() gave
+  /// it. If Newton's method finds no equilibrium near it, the result is a minimum downhill of it or
+  /// found as by solve(). From an unstable one it descends unless clamps twist the rod, and returns
+  /// the unstable one if it does not reach a stable one. The problem must have the same obstacles
+  /// in the same order.
   Equilibrium follow(const Problem& problem);
   /// Follows the branch by Newton's method as follow() does, but does not continue beyond the end
   /// of the branch. Returns std::nullopt if no stable equilibrium is found near the last shape, if

@@ -99,8 +99,8 @@ struct [[nodiscard]] Equilibrium {
   /// `energy`: number of initial guesses that pass obstacles on another side; 0 from a known shape.
   int other_side_starts = 0;
   /// Largest depth of the axis behind a rigid obstacle, between the solver's nodes too [m]; 0
-  /// without such obstacles. A shape is not_verified if the depth exceeds `allowed_penetration`
-  /// lengths, for `exact` a tenth of that.
+  /// without such obstacles. Beyond `allowed_penetration` lengths a stable shape of `energy` is
+  /// not_verified, beyond a tenth of that any equilibrium of `exact`.
   double penetration = 0;
   Energies energy;                         ///< energies of the shape, if there is one [J]
   std::vector<Eigen::Vector3d> obstacles;  ///< force of each obstacle on the rod [N]
