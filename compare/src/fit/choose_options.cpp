@@ -1,5 +1,3 @@
-#include "fit/fit_from.hpp"
-
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
@@ -8,6 +6,7 @@
 #include <utility>
 
 #include "dlo/compare/error.hpp"
+#include "fit/fit_from.hpp"
 #include "least_squares/fitted_rods.hpp"
 #include "least_squares/measured_shapes.hpp"
 #include "wire/identifiable.hpp"
