@@ -28,8 +28,9 @@
 namespace dlo::force_model::DLO_KERNEL {
 namespace {
 
-/// cos(hooke_fold_angle), and limit of a b (c - fold_cosine) [m^2]. The plain implementation
-/// computes all forces of a rod with a joint below it (folded further, or next to a short segment).
+/// cos(hooke_fold_angle), and the least a b (c - fold_cosine) [m^2]. If a joint is below this
+/// limit, because it is folded further or next to a short segment, the plain implementation
+/// computes all forces of the rod.
 constexpr double fold_cosine = -0.98999249660044546;
 constexpr double zero_area = 1e-60;
 

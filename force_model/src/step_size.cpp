@@ -46,7 +46,8 @@ double fastest_inner_mode(const Rod& rod, const Points& points) {
   return contraction + bending;
 }
 
-/// Returns the softest joint's EI; law paper: M L / alpha at the loads' moment M, 0 without loads.
+/// Returns the bending stiffness for the slowest mode [N m^2]: hooke, that of the softest joint;
+/// paper, M L / alpha at the moment M of the loads, which a folded joint limits; 0 without loads.
 double equivalent_rigidity(const Rod& rod) {
   const bool is_uniform = rod.bending.stiffnesses.size() == 0;
   const double stiffness =

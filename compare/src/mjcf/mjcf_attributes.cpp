@@ -128,8 +128,8 @@ std::optional<std::vector<double>> MjcfNode::numbers(const char* attribute, std:
       refuse(fmt::format("{} is not a number, or out of range", quoted_piece(word)));
     }
     values.push_back(*value);
+    if (values.size() > most) refuse("too many numbers");
   }
-  if (values.size() > most) refuse("too many numbers");
   if (values.size() < least) refuse("too few numbers");
   return values;
 }

@@ -26,7 +26,8 @@ Type type_of(const MjcfNode& node) {
 
 /// Returns the number of half-sizes that define a geom.
 std::size_t sizes_of(Type type) {
-  constexpr std::size_t sizes[] = {0, 1, 2, 3, 2, 3, 0};  // in the order of MjcfGeom::Type
+  // In the order of MjcfGeom::Type; 0 for `other`, the last one.
+  constexpr std::size_t sizes[static_cast<std::size_t>(Type::other) + 1] = {0, 1, 2, 3, 2, 3};
   return sizes[static_cast<std::size_t>(type)];
 }
 

@@ -85,7 +85,7 @@ class PolygonResponse {
   /// of inertia.
   [[nodiscard]] bool is_positive(const Eigen::SparseMatrix<double>& matrix) const;
   [[nodiscard]] Response response_to(const Eigen::Matrix3Xd& f, const Eigen::Matrix3Xd& eta) const;
-  /// Returns each sum of steps from a grip's first point to the next one's, 3 x (grips - 1).
+  /// Returns the sums of the steps between the first points of adjacent grips, 3 x (grips - 1).
   [[nodiscard]] Eigen::Matrix3Xd sums_between_grips(const Eigen::Matrix3Xd& steps) const;
   [[nodiscard]] Eigen::Matrix3Xd points_along(const Eigen::Vector3d& start,
                                               const Eigen::Matrix3Xd& steps) const;

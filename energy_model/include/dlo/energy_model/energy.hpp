@@ -120,11 +120,12 @@ class EnergySolver {
   Equilibrium solve(const Problem& problem);
   /// Solves from the shape of the previous call, for a gripper or an obstacle that has moved a
   /// little, by Newton's method with contacts that are updated. It acts as solve() if there is no
-  /// such shape, if that was neither stable nor at a singular point, or shape_without_search() gave
-  /// it. If Newton's method finds no equilibrium near it, the result is a minimum downhill of it or
-  /// found as by solve(). From an unstable one it descends unless clamps twist the rod, and returns
-  /// the unstable one if it does not reach a stable one. The problem must have the same obstacles
-  /// in the same order.
+  /// such shape, if that shape was neither stable nor at a singular point, or if
+  /// shape_without_search() gave it. If Newton's method finds no equilibrium, the result is a
+  /// minimum downhill of the previous shape, or failing that the result of solve(). If Newton's
+  /// method finds an unstable equilibrium, the result is a stable one downhill of it, or the
+  /// unstable one if none is reached or clamps twist the rod. The problem must have the same
+  /// obstacles in the same order.
   Equilibrium follow(const Problem& problem);
   /// Follows the branch by Newton's method as follow() does, but does not continue beyond the end
   /// of the branch. Returns std::nullopt if no stable equilibrium is found near the last shape, if
